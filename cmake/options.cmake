@@ -1,0 +1,20 @@
+# Compiler options shared by every target of the project, as one interface target.
+find_package(Threads REQUIRED)
+add_library(loopwright_options INTERFACE)
+target_include_directories(loopwright_options INTERFACE ${CMAKE_SOURCE_DIR}/src)
+target_compile_options(loopwright_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Wcast-align -Wunused
+  -Woverloaded-virtual -Wnull-dereference
+  # errno and trapping are never looked at; NaN and infinity keep their meaning (no -ffast-math)
+  -fno-math-errno -fno-trapping-math
+  # one rounding per operation on every compiler: results do not depend on fused multiply-add
+  -ffp-contract=off)
+if(LOOPWRIGHT_WERROR)
+  target_compile_options(loopwright_options INTERFACE -Werror)
+endif()
+if(LOOPWRIGHT_SANITIZE)
+  target_compile_options(loopwright_options INTERFACE
+    -fsanitize=${LOOPWRIGHT_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(loopwright_options INTERFACE -fsanitize=${LOOPWRIGHT_SANITIZE})
+endif()
+target_link_libraries(loopwright_options INTERFACE Threads::Threads)

@@ -1,0 +1,22 @@
+# One static library per stage, linked in the order of the road: a stage sees only stages to its left.
+# base -> notation -> machine -> topology -> geometry -> mechanics -> experiments -> outputs -> apps
+set(LOOPWRIGHT_STAGES base notation machine topology geometry mechanics experiments outputs)
+set(stage_to_the_left loopwright_options)
+foreach(stage IN LISTS LOOPWRIGHT_STAGES)
+  file(GLOB_RECURSE stage_sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/src/${stage}/*.cpp)
+  if(stage_sources)
+    add_library(loopwright_${stage} STATIC ${stage_sources})
+    target_link_libraries(loopwright_${stage} PUBLIC ${stage_to_the_left})
+  else()
+    add_library(loopwright_${stage} INTERFACE)
+    target_link_libraries(loopwright_${stage} INTERFACE ${stage_to_the_left})
+  endif()
+  if(EXISTS ${CMAKE_SOURCE_DIR}/src/${stage}/stage.cmake)
+    include(${CMAKE_SOURCE_DIR}/src/${stage}/stage.cmake)   # third-party libraries of this stage
+  endif()
+  set(stage_to_the_left loopwright_${stage})
+endforeach()
+if(EXISTS ${CMAKE_SOURCE_DIR}/src/pipeline.cpp)
+  add_library(loopwright_pipeline STATIC ${CMAKE_SOURCE_DIR}/src/pipeline.cpp)
+  target_link_libraries(loopwright_pipeline PUBLIC loopwright_outputs)
+endif()

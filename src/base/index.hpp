@@ -1,6 +1,7 @@
 // Typed indices: a LoopId is not a YarnId. -1 means none.
 #pragma once
 #include <compare>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 

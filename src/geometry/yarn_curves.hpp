@@ -31,6 +31,13 @@ struct CurveYarn {
   double diameter = 1;              // relative to the reference diameter
 };
 
+// An interlacing inside a window or cell. In a periodic cell the child is taken at this lattice image.
+struct PlacedInterlacing {
+  LoopId parent, child;
+  int sign = 1;                     // as in Interlacing
+  std::array<int, 2> shift{0, 0};
+};
+
 struct YarnCurves {
   std::vector<CurveYarn> yarns;
   double diameter_mm = 1;           // the unit of length
@@ -39,7 +46,7 @@ struct YarnCurves {
   // between its outermost binding points plus one pitch, so that spacings are width / wales and height / courses.
   double width = 0, height = 0, skew = 0;
   double wales = 0, courses = 0;    // counted in that width and height
-  std::vector<Interlacing> interlacings;  // those with both loops inside
+  std::vector<PlacedInterlacing> interlacings;  // those with both loops inside
 };
 
 }  // namespace loopwright

@@ -70,9 +70,13 @@ struct FabricSettings {
   std::optional<Edges> edges;
   int size_wales = 0, size_courses = 0;   // ;;Size, 0 if none
   int repeat_wales = 0, repeat_courses = 0;  // the notation's own repeat, 0 if it has none (knitout)
-  // Held and periodic fabrics are knitted with a margin of whole repeats round the wanted size; the window of
-  // wanted needles and courses lies at this offset (in wales and courses of the knitted piece).
-  int margin_wales = 0, margin_courses = 0;
+};
+
+// The part of a programme that is wanted. Fabric files with held or periodic edges are knitted with a margin of
+// whole repeats all round, so that every wanted loop has its true neighbours; the margin is then cut away.
+struct ProgramWindow {
+  int first_needle = 0, needles = 0;            // needle positions (both beds); needles = 0: everything
+  int first_instruction = 0, instructions = 0;  // loops formed by instructions in [first, first + count)
 };
 
 struct Program {
@@ -83,6 +87,8 @@ struct Program {
   FabricSettings settings;
   std::vector<std::pair<std::string, std::string>> headers;  // as written, in order
   std::vector<Instruction> instructions;
+  ProgramWindow window;                   // of a fabric file with held or periodic edges
+  std::vector<int> repeat_starts;         // instruction at which each course-wise repeat of a fabric file starts
 };
 
 }  // namespace loopwright

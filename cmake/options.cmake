@@ -1,4 +1,8 @@
 # Compiler options shared by every target of the project, as one interface target.
+find_program(LOOPWRIGHT_CCACHE ccache)
+if(LOOPWRIGHT_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${LOOPWRIGHT_CCACHE})
+endif()
 find_package(Threads REQUIRED)
 add_library(loopwright_options INTERFACE)
 target_include_directories(loopwright_options INTERFACE ${CMAKE_SOURCE_DIR}/src)

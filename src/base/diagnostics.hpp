@@ -44,7 +44,8 @@ class Diagnostics {
   int errors_ = 0, warnings_ = 0;
 };
 
-// Writes `FILE:LINE:COL: error: text` lines in the order of the file's lines, and a count of what was not kept.
+// Writes `FILE:LINE:COL: error: text` lines in the order of the file's lines, and a count of what was not
+// kept.
 std::ostream& operator<<(std::ostream& out, const Diagnostics& diagnostics);
 
 }  // namespace loopwright

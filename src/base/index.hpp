@@ -27,5 +27,7 @@ using CarrierId = Index<struct CarrierTag>;
 
 template <class Tag>
 struct std::hash<loopwright::Index<Tag>> {
-  std::size_t operator()(loopwright::Index<Tag> i) const noexcept { return std::hash<std::int32_t>()(i.value); }
+  std::size_t operator()(loopwright::Index<Tag> i) const noexcept {
+    return std::hash<std::int32_t>()(i.value);
+  }
 };

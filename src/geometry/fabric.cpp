@@ -18,7 +18,8 @@ std::array<double, 4> basis_slope(double u) {
 
 Vec3 blend(const Fabric& fabric, const FabricYarn& yarn, int segment, const std::array<double, 4>& weights) {
   Vec3 p;
-  for (int k = 0; k < 4; ++k) p += control_point(fabric, yarn, segment + k) * weights[static_cast<std::size_t>(k)];
+  for (int k = 0; k < 4; ++k)
+    p += control_point(fabric, yarn, segment + k) * weights[static_cast<std::size_t>(k)];
   return p;
 }
 
@@ -55,7 +56,8 @@ double arc_length(const Fabric& fabric, const FabricYarn& yarn) {
                                          0.17392742256872693};
   double length = 0;
   for (int e = 0; e < yarn.segments(); ++e)
-    for (std::size_t g = 0; g < 4; ++g) length += weight[g] * norm(blend(fabric, yarn, e, basis_slope(node[g])));
+    for (std::size_t g = 0; g < 4; ++g)
+      length += weight[g] * norm(blend(fabric, yarn, e, basis_slope(node[g])));
   return length;
 }
 

@@ -1,5 +1,5 @@
-// Fabric: the yarns of a piece or cell as uniform cubic B-splines. This is what mechanics moves, what a saved state
-// holds and what every output draws; the first geometry and the relaxed cloth have the same form.
+// Fabric: the yarns of a piece or cell as uniform cubic B-splines. This is what mechanics moves, what a saved
+// state holds and what every output draws; the first geometry and the relaxed cloth have the same form.
 //
 // Lengths are in d, the diameter of the reference yarn; `diameter_mm` turns them into millimetres.
 // Yarn y has control points q_0 .. q_(n-1). Open: n - 3 segments. Periodic: n segments, with
@@ -15,7 +15,8 @@
 
 namespace loopwright {
 
-// The stretch of yarn that belongs to a loop: from the middle of the sinker before it to that of the one after it.
+// The stretch of yarn that belongs to a loop: from the middle of the sinker before it to that of the one
+// after it.
 struct LoopSpan {
   LoopId loop;
   int yarn = 0;                         // index into Fabric::yarns
@@ -26,16 +27,16 @@ struct LoopSpan {
 };
 
 struct FabricYarn {
-  YarnId yarn;                          // in the graph
+  YarnId yarn;  // in the graph
   CarrierId carrier;
-  std::string colour;                   // "#rrggbb"
-  double diameter = 1;                  // in d
-  double linear_density_tex = 0;        // 0: unknown
-  double segment_rest_length = 1;       // in d, the same for every segment of the yarn
+  std::string colour;              // "#rrggbb"
+  double diameter = 1;             // in d
+  double linear_density_tex = 0;   // 0: unknown
+  double segment_rest_length = 1;  // in d, the same for every segment of the yarn
   bool periodic = false;
   std::array<int, 2> shift{0, 0};
   std::vector<Vec3> control_points;
-  std::vector<std::uint8_t> held;       // per control point: 1 if tied to the frame
+  std::vector<std::uint8_t> held;  // per control point: 1 if tied to the frame
 
   int segments() const {
     const int n = static_cast<int>(control_points.size());
@@ -50,7 +51,7 @@ struct Fabric {
   std::vector<PlacedInterlacing> interlacings;  // what must be interlaced
   double diameter_mm = 1;
   bool periodic = false;
-  double width = 0, height = 0, skew = 0;       // in d; periodic: a1 = (width, 0, 0), a2 = (skew, height, 0)
+  double width = 0, height = 0, skew = 0;  // in d; periodic: a1 = (width, 0, 0), a2 = (skew, height, 0)
   double wales = 0, courses = 0;
 
   Vec3 lattice(int m, int n) const { return {m * width + n * skew, n * height, 0}; }

@@ -7,10 +7,10 @@
 
 namespace loopwright {
 
-// A loop's stay on a needle. `slot` is the needle's place on the common axis, in needle pitches: front i -> i,
-// back i -> i + racking (the exact racking, so an all-needle racking gives half-way places).
+// A loop's stay on a needle. `slot` is the needle's place on the common axis, in needle pitches: front i ->
+// i, back i -> i + racking (the exact racking, so an all-needle racking gives half-way places).
 struct Placement {
-  int instruction = -1;   // index into Program::instructions when it came onto this needle
+  int instruction = -1;  // index into Program::instructions when it came onto this needle
   Needle needle;
   double slot = 0;
 };
@@ -32,9 +32,9 @@ struct LoopRecord {
   int pass = -1;                      // carriage pass that formed it
   double racking = 0;                 // when it was formed
   std::vector<Placement> placements;  // where it was formed, then every needle it was moved to
-  std::vector<LoopId> parents;        // loops that it was drawn through, in stack order (oldest in the hook first)
+  std::vector<LoopId> parents;  // loops that it was drawn through, in stack order (oldest in the hook first)
   LoopFate fate = LoopFate::held;
-  int fate_instruction = -1;          // what cast it off or dropped it; -1 while held
+  int fate_instruction = -1;  // what cast it off or dropped it; -1 while held
 
   const Placement& formed() const { return placements.front(); }
   const Placement& last() const { return placements.back(); }
@@ -42,7 +42,7 @@ struct LoopRecord {
 
 // What a yarn met, in order: a loop, or a needle that it passed without a loop (miss).
 struct YarnStep {
-  LoopId loop;          // invalid for a miss
+  LoopId loop;  // invalid for a miss
   Needle needle;
   double slot = 0;
   Direction direction = Direction::right;
@@ -51,12 +51,13 @@ struct YarnStep {
 
 struct YarnRecord {
   CarrierId carrier;
-  std::vector<YarnStep> steps;   // a carrier taken out and in again starts a new yarn
+  std::vector<YarnStep> steps;  // a carrier taken out and in again starts a new yarn
   int in_instruction = -1, out_instruction = -1;
 };
 
-// Two loops that racking carried past each other while they were on opposite beds: the one on the front bed passed
-// in front. `front_moved`: +1 if it moved to the right relative to the other, -1 to the left. In time order.
+// Two loops that racking carried past each other while they were on opposite beds: the one on the front bed
+// passed in front. `front_moved`: +1 if it moved to the right relative to the other, -1 to the left. In time
+// order.
 struct LoopCrossing {
   LoopId front, back;
   int front_moved = 0;
@@ -70,12 +71,13 @@ struct NeedleStack {
 };
 
 struct KnittingRecord {
-  std::vector<LoopRecord> loops;      // in the order in which they were formed
+  std::vector<LoopRecord> loops;  // in the order in which they were formed
   std::vector<YarnRecord> yarns;
   std::vector<LoopCrossing> crossings;
-  std::vector<NeedleStack> held;      // at the end, by needle
-  // The stack in which each loop was when it was cast off, dropped or left at the end: `stack_rank` counts from the
-  // front of the fabric (+z) to its back, 0 in front; `stack_height` is the number of loops that lay there.
+  std::vector<NeedleStack> held;  // at the end, by needle
+  // The stack in which each loop was when it was cast off, dropped or left at the end: `stack_rank` counts
+  // from the front of the fabric (+z) to its back, 0 in front; `stack_height` is the number of loops that lay
+  // there.
   std::vector<int> stack_rank, stack_height;
   int passes = 0;
 };

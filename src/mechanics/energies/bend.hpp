@@ -1,0 +1,70 @@
+// Bending of one spline segment of rest length h, straight when unloaded:
+//   U = 1/2 B int kappa^2 ds0 = 1/2 B h int kappa^2 du,   kappa^2 = |p' x p''|^2 / |p'|^6
+// B: bend stiffness (1 in the model's units, energies in B/d). 4-point Gauss.
+// With A = p'.p', C = p'.p'', D = p''.p'': kappa^2 = f = D A^-2 - C^2 A^-3; derivatives follow by the chain rule.
+#pragma once
+#include "mechanics/energies/energy.hpp"
+
+namespace loopwright {
+
+struct Bend {
+  static constexpr const char* name = "bend";
+  static constexpr std::size_t dofs = 12;
+  double stiffness = 1;    // B
+  double rest_length = 1;  // h
+
+  LocalTerm<12> evaluate(const SegmentDofs& x) const {
+    LocalTerm<12> term;
+    for (std::size_t g = 0; g < 4; ++g) {
+      const auto& h1 = gauss_spline[g].slope;
+      const auto& h2 = gauss_spline[g].curve;
+      std::array<double, 3> a{}, b{};
+      for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t c = 0; c < 3; ++c) {
+          a[c] += h1[i] * x[3 * i + c];
+          b[c] += h2[i] * x[3 * i + c];
+        }
+      const double A = a[0] * a[0] + a[1] * a[1] + a[2] * a[2];
+      const double C = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+      const double D = b[0] * b[0] + b[1] * b[1] + b[2] * b[2];
+      const double w = 0.5 * gauss_weight[g] * stiffness * rest_length;
+      const double i1 = 1 / A, i2 = i1 * i1, i3 = i2 * i1, i4 = i2 * i2;
+      const double f_A = w * (-2 * D * i3 + 3 * C * C * i4), f_C = w * (-2 * C * i3), f_D = w * i2;
+      const double f_AA = w * (6 * D * i4 - 12 * C * C * i4 * i1), f_AC = w * 6 * C * i4, f_AD = w * (-2 * i3),
+                   f_CC = w * (-2 * i3);
+      term.energy += w * (D * i2 - C * C * i3);
+
+      std::array<double, 3> da{}, db{};
+      for (std::size_t c = 0; c < 3; ++c) {
+        da[c] = 2 * f_A * a[c] + f_C * b[c];
+        db[c] = 2 * f_D * b[c] + f_C * a[c];
+      }
+      std::array<std::array<double, 3>, 3> haa, hab, hbb;
+      for (std::size_t c = 0; c < 3; ++c)
+        for (std::size_t e = 0; e < 3; ++e) {
+          haa[c][e] = 4 * f_AA * a[c] * a[e] + 2 * f_AC * (a[c] * b[e] + b[c] * a[e]) + f_CC * b[c] * b[e];
+          hab[c][e] = 4 * f_AD * a[c] * b[e] + 2 * f_AC * a[c] * a[e] + f_CC * b[c] * a[e];
+          hbb[c][e] = f_CC * a[c] * a[e];
+          if (c == e) {
+            haa[c][e] += 2 * f_A;
+            hab[c][e] += f_C;
+            hbb[c][e] += 2 * f_D;
+          }
+        }
+      for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t c = 0; c < 3; ++c) term.gradient[3 * i + c] += h1[i] * da[c] + h2[i] * db[c];
+      for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t j = i; j < 4; ++j)
+          for (std::size_t c = 0; c < 3; ++c)
+            for (std::size_t e = 0; e < 3; ++e) {
+              const double v = h1[i] * h1[j] * haa[c][e] + h1[i] * h2[j] * hab[c][e] +
+                               h2[i] * h1[j] * hab[e][c] + h2[i] * h2[j] * hbb[c][e];
+              term.hessian[3 * i + c][3 * j + e] += v;
+              if (i != j) term.hessian[3 * j + e][3 * i + c] += v;
+            }
+    }
+    return term;
+  }
+};
+
+}  // namespace loopwright

@@ -1,0 +1,75 @@
+// YarnModel: what never changes while a fabric moves (stiffnesses, rest lengths, index lists);
+// YarnState: what moves (control points and lattice). Lengths in d, energies in B/d of the reference yarn.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "geometry/fabric.hpp"
+#include "mechanics/energies/contact.hpp"
+#include "mechanics/laws/contact_law.hpp"
+
+namespace loopwright {
+
+// Which of the fabric's outer measures are unknowns. Periodic cells: the lattice; held pieces: the stretch of the frame.
+struct FreeMeasures {
+  bool width = true, height = true, skew = false;
+};
+
+// Yarn data in the model's units: lengths in d, stiffness B = 1.
+struct YarnMaterial {
+  double stretch_stiffness = 3000;  // EA d^2 / B
+  double bend_stiffness = 1;        // B of this yarn over B of the reference yarn
+  ContactLaw contact;               // outer diameter 1 for the reference yarn
+};
+
+struct YarnModel {
+  struct Yarn {
+    int first_node = 0, nodes = 0;          // control points
+    int first_segment = 0, segments = 0;
+    int first_extended = 0;                 // see `base`
+    bool periodic = false;
+    std::array<int, 2> shift{0, 0};
+    double rest_length = 1;                 // of a segment
+    double diameter = 1;
+    double stretch_stiffness = 3000, bend_stiffness = 1;
+  };
+  std::vector<Yarn> yarns;
+  int nodes = 0, segments = 0, extended = 0;
+
+  // Extended control points: per yarn its control points and, if periodic, the first three again, shifted. So the
+  // four control points of any segment lie at extended places first[e] .. first[e] + 3.
+  std::vector<std::int32_t> base;                  // [extended] control point
+  std::vector<std::array<std::int8_t, 2>> image;   // [extended] lattice shift
+  std::vector<std::int32_t> first;                 // [segment] first extended control point
+  std::vector<std::int32_t> yarn_of_segment;       // [segment]
+  std::vector<std::uint8_t> held;                  // [node]
+
+  ContactLaw contact;
+  int samples = 8;                                 // contact samples per segment
+  SampleWeights weights{};                         // spline weights of the samples
+  double excluded = 1.9634954084936207;            // same-yarn pairs closer than this (1.25 pi/2 d) along the yarn do not touch
+  bool periodic = false;
+  FreeMeasures free;
+};
+
+struct YarnState {
+  std::vector<Vec3> nodes;                         // [node] control points
+  double width = 0, height = 0, skew = 0;
+
+  Vec3 lattice(int m, int n) const { return {m * width + n * skew, n * height, 0}; }
+};
+
+struct ModelOptions {
+  YarnMaterial material;
+  double sample_spacing = 0.18;  // wanted distance of contact samples along a yarn, in d
+  FreeMeasures free;
+};
+
+// Throws std::invalid_argument on non-finite input or data out of range, saying which and what is allowed.
+YarnModel build_yarn_model(const Fabric& fabric, const ModelOptions& options);
+YarnState build_yarn_state(const Fabric& fabric);
+// The fabric with the state's places.
+Fabric with_state(const Fabric& fabric, const YarnState& state);
+
+}  // namespace loopwright

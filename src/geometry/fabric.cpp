@@ -50,14 +50,25 @@ std::vector<Vec3> polyline(const Fabric& fabric, const FabricYarn& yarn, int per
 }
 
 double arc_length(const Fabric& fabric, const FabricYarn& yarn) {
+  return arc_length(fabric, yarn, 0, yarn.segments());
+}
+
+double arc_length(const Fabric& fabric, const FabricYarn& yarn, double begin, double end) {
   constexpr std::array<double, 4> node{0.069431844202973712, 0.33000947820757187, 0.66999052179242813,
                                        0.93056815579702629};
   constexpr std::array<double, 4> weight{0.17392742256872693, 0.32607257743127307, 0.32607257743127307,
                                          0.17392742256872693};
   double length = 0;
-  for (int e = 0; e < yarn.segments(); ++e)
-    for (std::size_t g = 0; g < 4; ++g)
-      length += weight[g] * norm(blend(fabric, yarn, e, basis_slope(node[g])));
+  while (begin < end) {
+    // from here to the next knot, or to the end
+    const int segment = static_cast<int>(std::floor(begin));
+    const double stop = std::min(end, segment + 1.0), step = stop - begin;
+    for (std::size_t g = 0; g < 4; ++g) {
+      const double u = begin - segment + node[g] * step;
+      length += step * weight[g] * norm(blend(fabric, yarn, segment, basis_slope(u)));
+    }
+    begin = stop;
+  }
   return length;
 }
 

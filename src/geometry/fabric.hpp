@@ -65,5 +65,7 @@ Vec3 position(const Fabric& fabric, const FabricYarn& yarn, double t);
 std::vector<Vec3> polyline(const Fabric& fabric, const FabricYarn& yarn, int per_segment);
 // Arc length of the centreline, in d (4-point Gauss a segment).
 double arc_length(const Fabric& fabric, const FabricYarn& yarn);
+// The same between two parameters, begin <= end; open yarns: both in [0, segments].
+double arc_length(const Fabric& fabric, const FabricYarn& yarn, double begin, double end);
 
 }  // namespace loopwright

@@ -13,18 +13,19 @@ show_tail() {
 
 # Package names of tools/packages.txt that dpkg does not know as installed.
 missing_packages() {
-  local package status
-  while read -r package; do
-    [[ -z $package || $package == \#* ]] && continue
-    status=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)
-    [[ $status == installed ]] || echo "$package"
-  done < tools/packages.txt
+  local wanted installed
+  wanted=$(grep -v '^#' tools/packages.txt | sort)
+  # dpkg-query fails where it does not know one of the names, and lists the others all the same
+  installed=$(xargs dpkg-query -W -f='${Package} ${db:Status-Status}\n' <<< "$wanted" 2> /dev/null |
+    sed -n 's/ installed$//p' | sort -u) || true
+  grep -vxF "${installed:-none}" <<< "$wanted" || true
 }
 
 install_packages() {
-  local missing as_root=()
-  mapfile -t missing < <(missing_packages)
-  ((${#missing[@]} == 0)) && return
+  local names missing=() as_root=()
+  names=$(missing_packages)
+  [[ -z $names ]] && return
+  mapfile -t missing <<< "$names"
   if [[ $(id -u) != 0 ]]; then
     if ! command -v sudo > /dev/null; then
       echo "These Debian packages are missing, and installing them needs root or sudo:" >&2

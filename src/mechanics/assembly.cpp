@@ -1,0 +1,329 @@
+#include "mechanics/assembly.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "base/parallel.hpp"
+#include "mechanics/energies/bend.hpp"
+#include "mechanics/energies/stretch.hpp"
+
+namespace loopwright {
+namespace {
+
+constexpr std::array<std::array<std::size_t, 3>, 3> symmetric_at{{{0, 1, 2}, {1, 3, 4}, {2, 4, 5}}};
+
+using Fraction = std::array<double, 2>;
+
+Fraction operator+(const Fraction& a, const Fraction& b) { return {a[0] + b[0], a[1] + b[1]}; }
+
+// H M for a 3 x 3 block H and M = [[xi, 0, eta], [0, eta, 0], [0, 0, 0]].
+Block times_measures(const Block& h, const Fraction& f) {
+  return {h[0] * f[0], h[1] * f[1], h[0] * f[1], h[3] * f[0], h[4] * f[1], h[3] * f[1],
+          h[6] * f[0], h[7] * f[1], h[6] * f[1]};
+}
+
+// out += M' C
+void add_measures_transposed(const Fraction& f, const Block& c, Block& out) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    out[k] += f[0] * c[k];
+    out[3 + k] += f[1] * c[3 + k];
+    out[6 + k] += f[1] * c[k];
+  }
+}
+
+void add(Block& to, const Block& from) {
+  for (std::size_t k = 0; k < 9; ++k) to[k] += from[k];
+}
+
+Block unpacked(const Symmetric3& s) { return {s[0], s[1], s[2], s[1], s[3], s[4], s[2], s[4], s[5]}; }
+
+Block transposed(const Block& b) { return {b[0], b[3], b[6], b[1], b[4], b[7], b[2], b[5], b[8]}; }
+
+// What one chunk of control points adds to sums over the whole fabric.
+struct Partial {
+  EnergyParts energy;
+  Measures gradient{};
+  Block corner{};
+};
+
+// Chunks are ranges of control points that depend on the fabric alone.
+int chunk_count(int nodes) { return std::clamp(nodes / 3000, 1, 16); }
+
+}  // namespace
+
+Assembly::Assembly(const YarnModel& model) : model_(model) {}
+
+double Assembly::law_scale(int a, int b) const {
+  const auto yarn = [&](int e) { return static_cast<std::size_t>(model_.yarn_of_segment[static_cast<std::size_t>(e)]); };
+  return 0.5 * (model_.yarns[yarn(a)].diameter + model_.yarns[yarn(b)].diameter);
+}
+
+void Assembly::prepare(const YarnState& state) {
+  expand(model_, state, extended_);
+  place_samples(model_, extended_, places_);
+}
+
+void Assembly::update_pairs(const YarnState& state, double range) {
+  prepare(state);
+  find_segment_pairs(model_, state, places_, range, pairs_);
+}
+
+std::vector<Fraction> Assembly::fractions(const YarnState& state) const {
+  std::vector<Fraction> f(state.nodes.size(), Fraction{0, 0});
+  if (!(state.width > 0) || !(state.height > 0)) return f;
+  for (std::size_t i = 0; i < f.size(); ++i) {
+    f[i][1] = state.nodes[i].y / state.height;
+    f[i][0] = (state.nodes[i].x - f[i][1] * state.skew) / state.width;
+  }
+  return f;
+}
+
+YarnState Assembly::moved(const YarnState& state, const Unknowns& step, double scale) const {
+  const std::vector<Fraction> f = fractions(state);
+  YarnState next = state;
+  for (std::size_t i = 0; i < f.size(); ++i) {
+    next.nodes[i] += scale * step.u[i];
+    next.nodes[i].x += scale * (f[i][0] * step.g[0] + f[i][1] * step.g[2]);
+    next.nodes[i].y += scale * f[i][1] * step.g[1];
+  }
+  next.width += scale * step.g[0];
+  next.height += scale * step.g[1];
+  next.skew += scale * step.g[2];
+  return next;
+}
+
+EnergyParts Assembly::energy(const YarnState& state) { return terms(state, nullptr, nullptr); }
+EnergyParts Assembly::gradient(const YarnState& state, Unknowns& gradient) { return terms(state, &gradient, nullptr); }
+EnergyParts Assembly::hessian(const YarnState& state, Unknowns& gradient, BlockMatrix& hessian) {
+  return terms(state, &gradient, &hessian);
+}
+
+void Assembly::build_pattern(BlockMatrix& matrix) const {
+  const auto nodes = static_cast<std::size_t>(model_.nodes);
+  // Count, fill with repetitions, then sort and make unique row by row.
+  std::vector<std::int32_t> start(nodes + 1, 0);
+  const auto segment_nodes = [&](int e) {
+    std::array<std::int32_t, 4> n;
+    const auto f = static_cast<std::size_t>(model_.first[static_cast<std::size_t>(e)]);
+    for (std::size_t k = 0; k < 4; ++k) n[k] = model_.base[f + k];
+    return n;
+  };
+  const auto each_block = [&](const auto& visit) {
+    for (int e = 0; e < model_.segments; ++e) {
+      const auto n = segment_nodes(e);
+      for (const auto i : n)
+        for (const auto j : n) visit(i, j);
+    }
+    for (const SegmentPair& p : pairs_) {
+      const auto na = segment_nodes(p.a), nb = segment_nodes(p.b);
+      for (const auto i : na)
+        for (const auto j : nb) {
+          visit(i, j);
+          visit(j, i);
+        }
+    }
+  };
+  each_block([&](std::int32_t i, std::int32_t) { ++start[static_cast<std::size_t>(i) + 1]; });
+  for (std::size_t i = 0; i < nodes; ++i) start[i + 1] += start[i];
+  std::vector<std::int32_t> columns(static_cast<std::size_t>(start[nodes])), fill(start.begin(), start.end() - 1);
+  each_block([&](std::int32_t i, std::int32_t j) { columns[static_cast<std::size_t>(fill[static_cast<std::size_t>(i)]++)] = j; });
+  matrix.row_start.assign(nodes + 1, 0);
+  matrix.column.clear();
+  for (std::size_t i = 0; i < nodes; ++i) {
+    const auto begin = columns.begin() + start[i], end = columns.begin() + start[i + 1];
+    std::sort(begin, end);
+    matrix.column.insert(matrix.column.end(), begin, std::unique(begin, end));
+    matrix.row_start[i + 1] = static_cast<std::int32_t>(matrix.column.size());
+  }
+  matrix.block.assign(matrix.column.size(), Block{});
+  matrix.border.assign(nodes, Block{});
+  matrix.corner = {};
+}
+
+EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMatrix* matrix) {
+  prepare(state);
+  const auto nodes = static_cast<std::size_t>(model_.nodes);
+  const std::vector<Fraction> node_fraction = fractions(state);
+  fraction_.resize(extended_.size());
+  for (std::size_t k = 0; k < fraction_.size(); ++k)
+    fraction_[k] = node_fraction[static_cast<std::size_t>(model_.base[k])] +
+                   Fraction{static_cast<double>(model_.image[k][0]), static_cast<double>(model_.image[k][1])};
+  if (gradient) {
+    gradient->u.assign(nodes, Vec3{});
+    gradient->g = {};
+  }
+  if (matrix) build_pattern(*matrix);
+
+  const int chunks = chunk_count(model_.nodes);
+  std::vector<Partial> partial(static_cast<std::size_t>(chunks));
+  parallel_chunks(chunks, [&](int c) {
+    // This chunk owns control points [low, high): it alone writes their rows, and evaluates every element that has one.
+    const auto low = static_cast<std::int32_t>(static_cast<std::int64_t>(model_.nodes) * c / chunks);
+    const auto high = static_cast<std::int32_t>(static_cast<std::int64_t>(model_.nodes) * (c + 1) / chunks);
+    Partial& sums = partial[static_cast<std::size_t>(c)];
+    const auto owned = [&](std::int32_t node) { return node >= low && node < high; };
+    const auto first_of = [&](int e) { return static_cast<std::size_t>(model_.first[static_cast<std::size_t>(e)]); };
+    const auto owns_segment = [&](int e) { return owned(model_.base[first_of(e)]); };  // for sums over segments
+    const auto touches = [&](int e) {
+      const std::size_t f = first_of(e);
+      return owned(model_.base[f]) || owned(model_.base[f + 1]) || owned(model_.base[f + 2]) || owned(model_.base[f + 3]);
+    };
+    const auto add_gradient = [&](std::size_t k, const Vec3& f, bool whole) {  // k: extended point
+      const auto node = model_.base[k];
+      if (owned(node)) gradient->u[static_cast<std::size_t>(node)] += f;
+      if (!whole) return;
+      sums.gradient[0] += fraction_[k][0] * f.x;
+      sums.gradient[1] += fraction_[k][1] * f.y;
+      sums.gradient[2] += fraction_[k][1] * f.x;
+    };
+    // Adds block h at (extended point k, extended point l with fraction fl); the row's owner keeps it.
+    const auto add_block = [&](std::size_t k, std::size_t l, const Block& h, const Fraction& fk, const Fraction& fl) {
+      const auto row = model_.base[k];
+      if (!owned(row)) return;
+      add(matrix->block[matrix->place(row, model_.base[l])], h);
+      const Block column = times_measures(h, fl);
+      add(matrix->border[static_cast<std::size_t>(row)], column);
+      add_measures_transposed(fk, column, sums.corner);
+    };
+
+    // Stretch and bend.
+    for (int e = 0; e < model_.segments; ++e) {
+      if (!touches(e)) continue;
+      const bool whole = owns_segment(e);
+      if (!whole && !gradient) continue;
+      const std::size_t f = first_of(e);
+      const YarnModel::Yarn& yarn = model_.yarns[static_cast<std::size_t>(model_.yarn_of_segment[static_cast<std::size_t>(e)])];
+      SegmentDofs x;
+      for (std::size_t k = 0; k < 4; ++k)
+        for (std::size_t d = 0; d < 3; ++d) x[3 * k + d] = extended_[f + k][static_cast<int>(d)];
+      const LocalTerm<12> stretch = Stretch{yarn.stretch_stiffness, yarn.rest_length}.evaluate(x);
+      const LocalTerm<12> bend = Bend{yarn.bend_stiffness, yarn.rest_length}.evaluate(x);
+      if (whole) {
+        sums.energy.stretch += stretch.energy;
+        sums.energy.bend += bend.energy;
+      }
+      if (gradient)
+        for (std::size_t k = 0; k < 4; ++k)
+          add_gradient(f + k, {stretch.gradient[3 * k] + bend.gradient[3 * k], stretch.gradient[3 * k + 1] + bend.gradient[3 * k + 1],
+                               stretch.gradient[3 * k + 2] + bend.gradient[3 * k + 2]}, whole);
+      if (matrix)
+        for (std::size_t k = 0; k < 4; ++k)
+          for (std::size_t l = 0; l < 4; ++l) {
+            Block h;
+            for (std::size_t r = 0; r < 3; ++r)
+              for (std::size_t s = 0; s < 3; ++s)
+                h[3 * r + s] = stretch.hessian[3 * k + r][3 * l + s] + bend.hessian[3 * k + r][3 * l + s];
+            add_block(f + k, f + l, h, fraction_[f + k], fraction_[f + l]);
+          }
+    }
+
+    // Contact.
+    ContactPairOutput out;
+    for (const SegmentPair& pair : pairs_) {
+      const bool touches_a = touches(pair.a), touches_b = touches(pair.b);
+      if (!touches_a && !touches_b) continue;
+      const bool whole = owns_segment(pair.a);
+      if (!whole && !gradient) continue;
+      const std::size_t a0 = static_cast<std::size_t>(pair.a * model_.samples), b0 = static_cast<std::size_t>(pair.b * model_.samples);
+      const YarnModel::Yarn& ya = model_.yarns[static_cast<std::size_t>(model_.yarn_of_segment[static_cast<std::size_t>(pair.a)])];
+      const YarnModel::Yarn& yb = model_.yarns[static_cast<std::size_t>(model_.yarn_of_segment[static_cast<std::size_t>(pair.b)])];
+      ContactPairInput in{{&places_.x[a0], &places_.y[a0], &places_.z[a0]}, {&places_.x[b0], &places_.y[b0], &places_.z[b0]}};
+      const Vec3 image = state.lattice(pair.m, pair.n);
+      in.image = {image.x, image.y, image.z};
+      in.count = model_.samples;
+      in.weight = ya.rest_length * yb.rest_length / (model_.samples * model_.samples);
+      if (pair.same_yarn) {
+        in.arc_offset = pair.arc_offset;
+        in.spacing = ya.rest_length / model_.samples;
+        in.excluded = model_.excluded * ya.diameter;
+      }
+      const double scale = law_scale(pair.a, pair.b);
+      const ContactLaw law = scale == 1 ? model_.contact : model_.contact.scaled(scale);
+      if (!gradient) {
+        sums.energy.contact += contact_energy(in, law);
+        continue;
+      }
+      contact_terms(in, law, model_.weights, matrix != nullptr, out);
+      if (!out.active) continue;
+      if (whole) sums.energy.contact += out.energy;
+      const Fraction shift{static_cast<double>(pair.m), static_cast<double>(pair.n)};
+      const bool imaged = pair.m != 0 || pair.n != 0;
+      const std::size_t fa = first_of(pair.a), fb = first_of(pair.b);
+      const auto n = static_cast<std::size_t>(model_.samples);
+      std::array<Fraction, 4> frac_a, frac_b;
+      for (std::size_t k = 0; k < 4; ++k) {
+        frac_a[k] = fraction_[fa + k];
+        frac_b[k] = imaged ? fraction_[fb + k] + shift : fraction_[fb + k];
+      }
+      for (std::size_t k = 0; k < 4; ++k) {
+        Vec3 ga, gb;
+        for (std::size_t i = 0; i < n; ++i) {
+          const double w = model_.weights[i][k];
+          ga += w * Vec3{out.gradient_a[i][0], out.gradient_a[i][1], out.gradient_a[i][2]};
+          gb += w * Vec3{out.gradient_b[i][0], out.gradient_b[i][1], out.gradient_b[i][2]};
+        }
+        add_gradient(fa + k, ga, whole);
+        add_gradient(fb + k, gb, whole);
+        if (whole && imaged) {
+          sums.gradient[0] += shift[0] * gb.x;
+          sums.gradient[1] += shift[1] * gb.y;
+          sums.gradient[2] += shift[1] * gb.x;
+        }
+      }
+      if (!matrix) continue;
+      for (std::size_t k = 0; k < 4; ++k)
+        for (std::size_t l = 0; l < 4; ++l) {
+          Symmetric3 aa{}, bb{};
+          for (std::size_t i = 0; i < n; ++i) {
+            const double w = model_.weights[i][k] * model_.weights[i][l];
+            for (std::size_t d = 0; d < 6; ++d) {
+              aa[d] += w * out.hessian_a[i][d];
+              bb[d] += w * out.hessian_b[i][d];
+            }
+          }
+          const Block between = unpacked(out.between[k][l]);
+          add_block(fa + k, fa + l, unpacked(aa), frac_a[k], frac_a[l]);
+          add_block(fb + k, fb + l, unpacked(bb), frac_b[k], frac_b[l]);
+          add_block(fa + k, fb + l, between, frac_a[k], frac_b[l]);
+          add_block(fb + l, fa + k, transposed(between), frac_b[l], frac_a[k]);
+        }
+    }
+  });
+
+  EnergyParts energy;
+  for (const Partial& p : partial) {
+    energy.stretch += p.energy.stretch;
+    energy.bend += p.energy.bend;
+    energy.contact += p.energy.contact;
+    for (std::size_t k = 0; k < 3; ++k)
+      if (gradient) gradient->g[k] += p.gradient[k];
+    if (matrix) add(matrix->corner, p.corner);
+  }
+  const std::array<bool, 3> free{model_.free.width, model_.free.height, model_.free.skew};
+  if (gradient) {
+    for (std::size_t i = 0; i < nodes; ++i)
+      if (model_.held[i]) gradient->u[i] = {};
+    for (std::size_t k = 0; k < 3; ++k)
+      if (!free[k]) gradient->g[k] = 0;
+  }
+  if (matrix) {
+    constexpr Block identity{1, 0, 0, 0, 1, 0, 0, 0, 1};
+    for (std::size_t i = 0; i < nodes; ++i) {
+      for (auto k = static_cast<std::size_t>(matrix->row_start[i]); k < static_cast<std::size_t>(matrix->row_start[i + 1]); ++k) {
+        const auto j = static_cast<std::size_t>(matrix->column[k]);
+        if (model_.held[i] || model_.held[j]) matrix->block[k] = i == j ? identity : Block{};
+      }
+      for (std::size_t m = 0; m < 3; ++m)
+        if (model_.held[i] || !free[m])
+          for (std::size_t d = 0; d < 3; ++d) matrix->border[i][3 * d + m] = 0;
+    }
+    for (std::size_t m = 0; m < 3; ++m)
+      for (std::size_t l = 0; l < 3; ++l)
+        if (!free[m] || !free[l]) matrix->corner[3 * m + l] = m == l ? 1 : 0;
+  }
+  return energy;
+}
+
+}  // namespace loopwright

@@ -1,0 +1,42 @@
+// A symmetric sparse matrix of 3 x 3 blocks over control points, bordered by three columns for the fabric's measures
+// (width, height, skew):   [ A  C ] [ u ]
+//                          [ C' G ] [ g ]
+// A is kept whole (both triangles) by rows, so that products and assembly can run by rows.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/vec3.hpp"
+
+namespace loopwright {
+
+using Block = std::array<double, 9>;   // row-major 3 x 3
+using Measures = std::array<double, 3>;  // width, height, skew
+
+struct BlockMatrix {
+  std::vector<std::int32_t> row_start;   // [rows + 1]
+  std::vector<std::int32_t> column;      // sorted in a row
+  std::vector<Block> block;
+  std::vector<Block> border;             // [rows] C: columns width, height, skew
+  Block corner{};                        // G
+
+  int rows() const { return static_cast<int>(row_start.size()) - 1; }
+  // Place of block (row, col); the pattern must have it.
+  std::size_t place(std::int32_t row, std::int32_t col) const;
+  void set_zero();
+};
+
+// A vector of unknowns: one displacement per control point and the measures.
+struct Unknowns {
+  std::vector<Vec3> u;
+  Measures g{};
+};
+double dot(const Unknowns& a, const Unknowns& b);
+void axpy(double s, const Unknowns& x, Unknowns& y);  // y += s x
+
+// y = A x (with border and corner).
+void multiply(const BlockMatrix& matrix, const Unknowns& x, Unknowns& y);
+
+}  // namespace loopwright

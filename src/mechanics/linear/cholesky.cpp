@@ -1,0 +1,257 @@
+#include "mechanics/linear/cholesky.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#ifdef LOOPWRIGHT_HAS_CHOLMOD
+#include <cholmod.h>
+#else
+#include <Eigen/SparseCholesky>
+#endif
+
+namespace loopwright {
+namespace {
+
+// Lower triangle in compressed columns = upper triangle by rows of the symmetric matrix.
+struct LowerColumns {
+  std::vector<int> start, row;
+  std::vector<double> value;
+};
+
+void lower_pattern(const BlockMatrix& m, LowerColumns& out) {
+  const int n = 3 * m.rows();
+  out.start.assign(static_cast<std::size_t>(n) + 1, 0);
+  out.row.clear();
+  for (int i = 0; i < m.rows(); ++i)
+    for (int r = 0; r < 3; ++r) {
+      const auto column = static_cast<std::size_t>(3 * i + r);
+      for (auto k = static_cast<std::size_t>(m.row_start[static_cast<std::size_t>(i)]);
+           k < static_cast<std::size_t>(m.row_start[static_cast<std::size_t>(i) + 1]); ++k) {
+        const int j = m.column[k];
+        if (j < i) continue;
+        for (int c = j == i ? r : 0; c < 3; ++c) out.row.push_back(3 * j + c);
+      }
+      out.start[column + 1] = static_cast<int>(out.row.size());
+    }
+  out.value.resize(out.row.size());
+}
+
+void lower_values(const BlockMatrix& m, double shift, LowerColumns& out) {
+  std::size_t at = 0;
+  for (int i = 0; i < m.rows(); ++i)
+    for (std::size_t r = 0; r < 3; ++r)
+      for (auto k = static_cast<std::size_t>(m.row_start[static_cast<std::size_t>(i)]);
+           k < static_cast<std::size_t>(m.row_start[static_cast<std::size_t>(i) + 1]); ++k) {
+        const int j = m.column[k];
+        if (j < i) continue;
+        const Block& b = m.block[k];
+        for (std::size_t c = j == i ? r : 0; c < 3; ++c)
+          out.value[at++] = b[3 * r + c] + (j == i && c == r ? shift : 0);
+      }
+}
+
+// Solves the 3 x 3 symmetric positive definite system; false if it is not positive definite.
+bool invert3(const Block& s, Block& inverse) {
+  Block l{};
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j <= i; ++j) {
+      double sum = s[3 * i + j];
+      for (std::size_t k = 0; k < j; ++k) sum -= l[3 * i + k] * l[3 * j + k];
+      if (i == j) {
+        if (!(sum > 0)) return false;
+        l[3 * i + i] = std::sqrt(sum);
+      } else {
+        l[3 * i + j] = sum / l[3 * j + j];
+      }
+    }
+  for (std::size_t c = 0; c < 3; ++c) {
+    std::array<double, 3> y{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      double sum = i == c ? 1 : 0;
+      for (std::size_t k = 0; k < i; ++k) sum -= l[3 * i + k] * y[k];
+      y[i] = sum / l[3 * i + i];
+    }
+    for (std::size_t i = 3; i-- > 0;) {
+      double sum = y[i];
+      for (std::size_t k = i + 1; k < 3; ++k) sum -= l[3 * k + i] * inverse[3 * k + c];
+      inverse[3 * i + c] = sum / l[3 * i + i];
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+struct Cholesky::Factor {
+  std::vector<std::int32_t> row_start, column;   // pattern of the analysed matrix
+  LowerColumns lower;
+  int unknowns = 0;
+  std::array<std::vector<double>, 3> border_solution;  // A^-1 C
+  std::vector<Block> border;
+  Block corner_inverse{};
+#ifdef LOOPWRIGHT_HAS_CHOLMOD
+  cholmod_common common{};
+  cholmod_factor* factor = nullptr;
+  Factor() {
+    cholmod_start(&common);
+    common.print = 0;
+    common.supernodal = CHOLMOD_SUPERNODAL;
+    common.nmethods = 1;
+    common.method[0].ordering = CHOLMOD_AMD;
+    common.postorder = 1;
+    common.error_handler = nullptr;
+  }
+  ~Factor() {
+    cholmod_free_factor(&factor, &common);
+    cholmod_finish(&common);
+  }
+  Factor(const Factor&) = delete;
+  Factor& operator=(const Factor&) = delete;
+
+  cholmod_sparse view() {
+    cholmod_sparse a{};
+    a.nrow = a.ncol = static_cast<std::size_t>(unknowns);
+    a.nzmax = lower.row.size();
+    a.p = lower.start.data();
+    a.i = lower.row.data();
+    a.x = lower.value.data();
+    a.stype = -1;
+    a.itype = CHOLMOD_INT;
+    a.xtype = CHOLMOD_REAL;
+    a.dtype = CHOLMOD_DOUBLE;
+    a.sorted = a.packed = 1;
+    return a;
+  }
+  // Orders control points (not coordinates): three times fewer rows, nine times fewer entries to look at.
+  void analyse(const BlockMatrix& m) {
+    cholmod_free_factor(&factor, &common);
+    std::vector<int> start{0}, row;
+    for (int i = 0; i < m.rows(); ++i) {
+      for (auto k = static_cast<std::size_t>(m.row_start[static_cast<std::size_t>(i)]);
+           k < static_cast<std::size_t>(m.row_start[static_cast<std::size_t>(i) + 1]); ++k)
+        if (m.column[k] >= i) row.push_back(m.column[k]);
+      start.push_back(static_cast<int>(row.size()));
+    }
+    cholmod_sparse graph{};
+    graph.nrow = graph.ncol = static_cast<std::size_t>(m.rows());
+    graph.nzmax = row.size();
+    graph.p = start.data();
+    graph.i = row.data();
+    graph.stype = -1;
+    graph.itype = CHOLMOD_INT;
+    graph.xtype = CHOLMOD_PATTERN;
+    graph.dtype = CHOLMOD_DOUBLE;
+    graph.sorted = graph.packed = 1;
+    std::vector<int> node_order(static_cast<std::size_t>(m.rows())), order;
+    if (m.rows() > 4000 && cholmod_metis(&graph, nullptr, 0, 1, node_order.data(), &common)) {
+    } else if (!cholmod_amd(&graph, nullptr, 0, node_order.data(), &common)) {
+      throw std::runtime_error("ordering the stiffness matrix failed (out of memory?)");
+    }
+    order.reserve(3 * node_order.size());
+    for (const int i : node_order)
+      for (int d = 0; d < 3; ++d) order.push_back(3 * i + d);
+    common.method[0].ordering = CHOLMOD_GIVEN;
+    cholmod_sparse a = view();
+    factor = cholmod_analyze_p(&a, order.data(), nullptr, 0, &common);
+    if (!factor) throw std::runtime_error("analysing the stiffness matrix failed (out of memory?)");
+  }
+  bool numeric() {
+    cholmod_sparse a = view();
+    cholmod_factorize(&a, factor, &common);
+    if (common.status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
+    return common.status == CHOLMOD_OK && factor->minor == factor->n;
+  }
+  void solve(const double* b, double* x) {
+    cholmod_dense rhs{};
+    rhs.nrow = rhs.d = rhs.nzmax = static_cast<std::size_t>(unknowns);
+    rhs.ncol = 1;
+    rhs.x = const_cast<double*>(b);
+    rhs.xtype = CHOLMOD_REAL;
+    rhs.dtype = CHOLMOD_DOUBLE;
+    cholmod_dense* result = cholmod_solve(CHOLMOD_A, factor, &rhs, &common);
+    if (!result) throw std::bad_alloc();
+    std::copy_n(static_cast<const double*>(result->x), unknowns, x);
+    cholmod_free_dense(&result, &common);
+  }
+  double entries() const { return factor ? static_cast<double>(factor->xsize) : 0; }
+#else
+  Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower> factorisation;
+  Eigen::Map<const Eigen::SparseMatrix<double>> view() {
+    return {unknowns, unknowns, static_cast<Eigen::Index>(lower.row.size()), lower.start.data(), lower.row.data(), lower.value.data()};
+  }
+  void analyse(const BlockMatrix&) { factorisation.analyzePattern(view()); }
+  bool numeric() {
+    factorisation.factorize(view());
+    return factorisation.info() == Eigen::Success;
+  }
+  void solve(const double* b, double* x) {
+    Eigen::Map<Eigen::VectorXd>(x, unknowns) = factorisation.solve(Eigen::Map<const Eigen::VectorXd>(b, unknowns));
+  }
+  double entries() const { return static_cast<double>(factorisation.matrixL().nestedExpression().nonZeros()); }
+#endif
+};
+
+Cholesky::Cholesky() : factor_(std::make_unique<Factor>()) {}
+Cholesky::~Cholesky() = default;
+
+double Cholesky::factor_entries() const { return factor_->entries(); }
+
+bool Cholesky::factor(const BlockMatrix& m, double shift, const Measures& measure_weight) {
+  Factor& f = *factor_;
+  const bool known = f.row_start == m.row_start && f.column == m.column;
+  f.unknowns = 3 * m.rows();
+  if (!known) lower_pattern(m, f.lower);
+  lower_values(m, shift, f.lower);
+  if (!known) {
+    f.analyse(m);
+    f.row_start = m.row_start;
+    f.column = m.column;
+  }
+  if (!f.numeric()) return false;
+
+  f.border = m.border;
+  Block s = m.corner;
+  std::vector<double> column(static_cast<std::size_t>(f.unknowns));
+  for (std::size_t k = 0; k < 3; ++k) {
+    s[4 * k] += shift * measure_weight[k];
+    bool empty = true;
+    for (std::size_t i = 0; i < f.border.size(); ++i)
+      for (std::size_t d = 0; d < 3; ++d) {
+        column[3 * i + d] = f.border[i][3 * d + k];
+        empty = empty && column[3 * i + d] == 0;
+      }
+    f.border_solution[k].assign(static_cast<std::size_t>(f.unknowns), 0);
+    if (!empty) f.solve(column.data(), f.border_solution[k].data());
+  }
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t l = 0; l < 3; ++l)
+      for (std::size_t i = 0; i < f.border.size(); ++i)
+        for (std::size_t d = 0; d < 3; ++d) s[3 * k + l] -= f.border[i][3 * d + k] * f.border_solution[l][3 * i + d];
+  return invert3(s, f.corner_inverse);
+}
+
+void Cholesky::solve(const Unknowns& b, Unknowns& x) {
+  Factor& f = *factor_;
+  std::vector<double> rhs(static_cast<std::size_t>(f.unknowns)), u(rhs.size());
+  for (std::size_t i = 0; i < b.u.size(); ++i)
+    for (std::size_t d = 0; d < 3; ++d) rhs[3 * i + d] = b.u[i][static_cast<int>(d)];
+  f.solve(rhs.data(), u.data());
+  Measures r = b.g;
+  for (std::size_t i = 0; i < f.border.size(); ++i)
+    for (std::size_t d = 0; d < 3; ++d)
+      for (std::size_t k = 0; k < 3; ++k) r[k] -= f.border[i][3 * d + k] * u[3 * i + d];
+  x.u.resize(b.u.size());
+  for (std::size_t k = 0; k < 3; ++k) {
+    x.g[k] = 0;
+    for (std::size_t l = 0; l < 3; ++l) x.g[k] += f.corner_inverse[3 * k + l] * r[l];
+  }
+  for (std::size_t i = 0; i < x.u.size(); ++i)
+    for (std::size_t d = 0; d < 3; ++d) {
+      double v = u[3 * i + d];
+      for (std::size_t k = 0; k < 3; ++k) v -= f.border_solution[k][3 * i + d] * x.g[k];
+      x.u[i][static_cast<int>(d)] = v;
+    }
+}
+
+}  // namespace loopwright

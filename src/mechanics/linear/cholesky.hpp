@@ -1,0 +1,31 @@
+// Sparse Cholesky factorisation of a bordered block matrix plus a shift, behind a narrow interface:
+//   [ A + shift I   C          ]
+//   [ C'            G + shift W ]     W: weights of the measures
+// CHOLMOD (supernodal) where the build found it, otherwise Eigen's simplicial factorisation.
+#pragma once
+#include <memory>
+
+#include "mechanics/linear/block_matrix.hpp"
+
+namespace loopwright {
+
+class Cholesky {
+ public:
+  Cholesky();
+  ~Cholesky();
+  Cholesky(const Cholesky&) = delete;
+  Cholesky& operator=(const Cholesky&) = delete;
+
+  // False if the matrix is not positive definite. The elimination order is found anew when the pattern changes.
+  bool factor(const BlockMatrix& matrix, double shift, const Measures& measure_weight);
+  // x = M^-1 b for the matrix of the last successful factor().
+  void solve(const Unknowns& b, Unknowns& x);
+  // Entries of the factor, for reports.
+  double factor_entries() const;
+
+ private:
+  struct Factor;
+  std::unique_ptr<Factor> factor_;
+};
+
+}  // namespace loopwright

@@ -1,0 +1,126 @@
+#include "mechanics/newton.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+#include "mechanics/safe_step.hpp"
+
+namespace loopwright {
+namespace {
+
+double largest_force(const Unknowns& g) {
+  double largest = 0;
+  for (const Vec3& f : g.u) largest = std::max(largest, squared_norm(f));
+  return std::sqrt(largest);
+}
+
+double largest_measure_force(const Unknowns& g) {
+  return std::max({std::abs(g.g[0]), std::abs(g.g[1]), std::abs(g.g[2])});
+}
+
+// What a unit change of width, height or skew means in squared control-point motion (sum of M'M).
+Measures measure_weights(const Assembly& assembly, const YarnState& state) {
+  Measures w{};
+  for (const auto& f : assembly.fractions(state)) {
+    w[0] += f[0] * f[0];
+    w[1] += f[1] * f[1];
+    w[2] += f[1] * f[1];
+  }
+  for (double& v : w) v = std::max(v, 1.0);
+  return w;
+}
+
+}  // namespace
+
+NewtonResult newton(const YarnModel& model, YarnState& state, const NewtonOptions& options, double first_shift) {
+  NewtonResult result;
+  Assembly assembly(model);
+  Cholesky cholesky;
+  BlockMatrix hessian;
+  Unknowns gradient, step;
+  const double outer = model.contact.outer;
+  double shift = first_shift, loose = 0.6;  // loose: how far past contact the pair list reaches, in d
+  const bool trace = std::getenv("LOOPWRIGHT_TRACE") != nullptr;
+
+  for (result.iterations = 0;; ++result.iterations) {
+    const double range = outer + loose;
+    assembly.update_pairs(state, range);
+    result.energy = assembly.hessian(state, gradient, hessian);
+    result.residual = largest_force(gradient);
+    result.measure_residual = largest_measure_force(gradient);
+    result.converged = result.residual < options.tolerance && result.measure_residual < options.tolerance;
+    if (options.on_iteration && !options.on_iteration(result.iterations, result.residual)) result.stopped = true;
+    if (result.converged || result.stopped || result.iterations >= options.most_iterations) break;
+
+    // Factor H + shift, raising the shift until it is positive definite.
+    const Measures weights = measure_weights(assembly, state);
+    const double tried_shift = shift;
+    int raised = 0;
+    while (true) {
+      ++result.factorisations;
+      if (cholesky.factor(hessian, shift, weights)) break;
+      shift = std::max(4 * shift, 1e-4);
+      if (++raised > 60) {
+        result.shift = shift;
+        return result;
+      }
+    }
+    cholesky.solve(gradient, step);
+    ++result.linear_iterations;
+    for (Vec3& v : step.u) v = -v;
+    for (double& v : step.g) v = -v;
+
+    const double slope = dot(gradient, step);
+    const YarnState target = assembly.moved(state, step, 1);
+    const SafeStep safe = safe_step(model, assembly, state, target, range, outer, 0.5);
+    double scale = safe.scale;
+    const double energy = result.energy.total();
+    double next_energy = 0;
+    YarnState next;
+    int cuts = 0;
+    for (;; ++cuts) {
+      next = assembly.moved(state, step, scale);
+      next_energy = assembly.energy(next).total();
+      if (next_energy <= energy + 1e-4 * scale * slope + 1e-13 * std::abs(energy)) break;
+      if (cuts >= 40) {
+        scale = 0;
+        break;
+      }
+      scale *= 0.5;
+    }
+    if (trace)
+      std::fprintf(stderr, "  it %3d E %.9g (b %.6g c %.4g s %.3g) res %.3e mres %.2e shift %.2e raised %d scale %.3g cuts %d ratio %.3g loose %.3g W %.4f H %.4f pairs %zu\n",
+                   result.iterations, energy, result.energy.bend, result.energy.contact, result.energy.stretch, result.residual,
+                   result.measure_residual, shift, raised, scale, cuts, safe.pair_ratio, safe.loose_motion, state.width, state.height,
+                   assembly.pairs().size());
+    if (scale == 0) {
+      if (shift > 1e12) break;
+      shift = std::max(16 * shift, 1e-3);
+      continue;
+    }
+    // Predicted decrease of the quadratic model along the taken step.
+    const double predicted = -(scale * slope + 0.5 * scale * scale * (-slope));
+    const double gain = predicted > 0 ? (energy - next_energy) / predicted : 1;
+    if (scale > 0.9 && gain > 0.5) {
+      shift = raised == 0 ? shift * 0.1 : shift * 0.5;
+      if (shift < 1e-9) shift = 1e-9;
+    } else if (scale < 0.1 || gain < 0.1) {
+      shift = std::max(shift * 3, 1e-6);
+    } else if (raised == 0 && scale > 0.4) {
+      shift *= 0.5;
+    }
+    (void)tried_shift;
+    // A step held back by the pair list's reach alone: look farther next time.
+    if (safe.loose_motion * safe.scale > 0.4 * (range - outer) && safe.pair_ratio * safe.scale < 0.4)
+      loose = std::min(2 * loose, 2.4);
+    else
+      loose = std::max(0.6, 0.7 * loose);
+    state = std::move(next);
+  }
+  result.shift = shift;
+  return result;
+}
+
+}  // namespace loopwright

@@ -1,0 +1,42 @@
+// Equilibrium of a fabric: the yarn is grown in, then Newton's method brings every force to rest.
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "mechanics/assembly.hpp"
+#include "mechanics/yarn_model.hpp"
+
+namespace loopwright {
+
+struct RelaxProgress {
+  std::string phase;         // "grow-in" or "relax"
+  int newton_iterations = 0;
+  double residual = 0;       // largest force on a control point, B/d^2
+  double radius = 1;         // share of the full yarn radius
+};
+
+struct RelaxOptions {
+  ModelOptions model;
+  double tolerance = 2e-4;   // largest force on a control point that counts as rest, B/d^2
+  int most_iterations = 600;
+  bool grow_in = true;       // start with a thin yarn; false: the fabric is a saved state at full radius
+  // Called after every iteration; returning false stops the run (what was reached is returned, not converged).
+  std::function<bool(const RelaxProgress&)> on_progress;
+};
+
+struct RelaxResult {
+  Fabric fabric;
+  EnergyParts energy;              // B/d
+  double residual = 0;             // largest force on a control point, B/d^2
+  double measure_residual = 0;     // largest dE/d(width or height) of one wale or course, B/d^2
+  int newton_iterations = 0, linear_iterations = 0, factorisations = 0;
+  bool converged = false, stopped = false;
+  int pass_throughs = 0;           // certified motions that failed their check: 0, or the result is broken
+  std::string message;             // why it ended, in words
+};
+
+// Throws std::invalid_argument on non-finite input or yarn data out of range.
+RelaxResult relax(const Fabric& fabric, const RelaxOptions& options);
+
+}  // namespace loopwright

@@ -47,6 +47,7 @@ struct YarnStep {
   double slot = 0;
   Direction direction = Direction::right;
   int instruction = -1;
+  Needle from;          // beside which the carrier stood just before, after transfers took it along; first step: `needle`
 };
 
 struct YarnRecord {
@@ -70,10 +71,17 @@ struct NeedleStack {
   std::vector<LoopId> loops;
 };
 
+// A change of the racking; re-stated rackings are no change.
+struct RackingChange {
+  int instruction = -1;
+  double racking = 0;   // from this instruction on
+};
+
 struct KnittingRecord {
   std::vector<LoopRecord> loops;  // in the order in which they were formed
   std::vector<YarnRecord> yarns;
-  std::vector<LoopCrossing> crossings;
+  std::vector<LoopCrossing> crossings;  // net: passings that undid each other are left out
+  std::vector<RackingChange> rackings;  // in time order; the racking is 0 before the first
   std::vector<NeedleStack> held;  // at the end, by needle
   // The stack in which each loop was when it was cast off, dropped or left at the end: `stack_rank` counts
   // from the front of the fabric (+z) to its back, 0 in front; `stack_height` is the number of loops that lay

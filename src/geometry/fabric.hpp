@@ -24,6 +24,7 @@ struct LoopSpan {
   SourceLocation at;
   LoopKind kind = LoopKind::knit;
   StitchSide side = StitchSide::front;
+  Direction direction = Direction::right;  // of its yarn when it was formed
 };
 
 struct FabricYarn {

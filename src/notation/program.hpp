@@ -1,8 +1,9 @@
 // Program: what both notations (fabric file and knitout) compile to, and all that the machine needs to know.
 #pragma once
-#include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/diagnostics.hpp"
@@ -100,6 +101,8 @@ struct Program {
   FabricSettings settings;
   std::vector<std::pair<std::string, std::string>> headers;  // as written, in order
   std::vector<Instruction> instructions;
+  std::vector<std::pair<int, std::string>>
+      source_marks;                // (instruction, text of its knitout `;!source:` comment)
   ProgramWindow window;            // of a fabric file with held or periodic edges
   std::vector<int> repeat_starts;  // instruction at which each course-wise repeat of a fabric file starts
 };

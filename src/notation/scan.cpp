@@ -1,0 +1,198 @@
+#include "notation/scan.hpp"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+
+namespace loopwright {
+
+bool LineReader::next(TextLine& line) {
+  if (rest_.empty()) return false;
+  const std::size_t end = rest_.find('\n');
+  line.text = rest_.substr(0, end);
+  rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+  line.carriage_return = !line.text.empty() && line.text.back() == '\r';
+  if (line.carriage_return) line.text.remove_suffix(1);
+  line.number = ++number_;
+  return true;
+}
+
+bool WordReader::next(Word& word) {
+  while (at_ < line_.size() && is_blank(line_[at_])) ++at_;
+  if (at_ == line_.size()) return false;
+  const std::size_t begin = at_;
+  while (at_ < line_.size() && !is_blank(line_[at_])) ++at_;
+  word.text = line_.substr(begin, at_ - begin);
+  word.column = first_column_ + static_cast<int>(begin);
+  return true;
+}
+
+bool is_blank(char c) { return c == ' ' || c == '\t'; }
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return lower;
+}
+
+namespace {
+
+// Length of the number at the start of `text`, 0 if there is none; from_chars alone takes no '+', but takes
+// "inf".
+std::size_t number_at_start(std::string_view text, double& value) {
+  const bool plus = !text.empty() && text.front() == '+';
+  std::string_view digits = text.substr(plus ? 1 : 0);
+  const std::string_view unsigned_part = !plus && digits.starts_with('-') ? digits.substr(1) : digits;
+  if (unsigned_part.empty() || !(is_digit(unsigned_part.front()) || unsigned_part.front() == '.')) return 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error != std::errc() || !std::isfinite(value)) return 0;
+  return static_cast<std::size_t>(end - text.data());
+}
+
+}  // namespace
+
+std::optional<double> parsed_number(std::string_view text) {
+  double value = 0;
+  if (text.empty() || number_at_start(text, value) != text.size()) return std::nullopt;
+  return value;
+}
+
+std::optional<int> parsed_integer(std::string_view text) {
+  if (text.starts_with('+')) {
+    text.remove_prefix(1);
+    if (text.starts_with('-')) return std::nullopt;
+  }
+  int value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (text.empty() || error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+std::string quoted(std::string_view text) {
+  constexpr std::size_t most = 40;
+  constexpr std::string_view hex = "0123456789abcdef";
+  std::string result = "'";
+  for (const char c : text.substr(0, most)) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte >= 32 && byte < 127) {
+      result += c;
+    } else {
+      result += "\\x";
+      result += hex[byte >> 4];
+      result += hex[byte & 15];
+    }
+  }
+  return result + (text.size() > most ? "...'" : "'");
+}
+
+namespace {
+
+struct Unit {
+  Dimension dimension;
+  std::string_view name;    // without blanks, '*' and '^'
+  double factor = 1;        // times the number
+  bool reciprocal = false;  // a count: length per mass, factor over the number
+};
+
+constexpr std::array units{
+    Unit{Dimension::length, "mm", 1},
+    Unit{Dimension::length, "cm", 10},
+    Unit{Dimension::length, "m", 1000},
+    Unit{Dimension::length, "um", 1e-3},
+    Unit{Dimension::length, "\xc2\xb5m", 1e-3},
+    Unit{Dimension::length, "in", 25.4},
+    Unit{Dimension::linear_density, "tex", 1},
+    Unit{Dimension::linear_density, "dtex", 0.1},
+    Unit{Dimension::linear_density, "g/km", 1},
+    Unit{Dimension::linear_density, "den", 1.0 / 9},
+    Unit{Dimension::linear_density, "Nm", 1000, true},
+    Unit{Dimension::linear_density, "Ne", 590.5412, true},  // 840 yd per lb
+    Unit{Dimension::force, "cN", 1},
+    Unit{Dimension::force, "N", 100},
+    Unit{Dimension::force, "mN", 0.1},
+    Unit{Dimension::force, "gf", 0.980665},
+    Unit{Dimension::bend_stiffness, "mNmm2", 1},
+    Unit{Dimension::bend_stiffness, "Nm2", 1e9},
+    Unit{Dimension::bend_stiffness, "Nmm2", 1e3},
+    Unit{Dimension::bend_stiffness, "uNm2", 1e3},
+    Unit{Dimension::bend_stiffness, "gfcm2", 980.665},
+    Unit{Dimension::shell_stiffness, "N/mm3", 1},
+    Unit{Dimension::shell_stiffness, "N/m3", 1e-9},
+    Unit{Dimension::share, "", 1},
+    Unit{Dimension::share, "%", 0.01},
+    Unit{Dimension::gauge, "", 1},
+    Unit{Dimension::gauge, "npi", 1},
+};
+
+std::string_view examples(Dimension dimension) {
+  switch (dimension) {
+    case Dimension::length:
+      return "mm, cm, m or in, e.g. '6.2 mm'";
+    case Dimension::linear_density:
+      return "tex, dtex, den, Nm or Ne, e.g. '71 tex'";
+    case Dimension::force:
+      return "cN, N, mN or gf, e.g. '5500 cN'";
+    case Dimension::bend_stiffness:
+      return "mN mm^2, N m^2 or gf cm^2, e.g. '10 mN mm^2'";
+    case Dimension::shell_stiffness:
+      return "N/mm^3 or N/m^3, e.g. '6e-4 N/mm^3'";
+    case Dimension::share:
+      return "a share without unit or %, e.g. '0.05' or '5 %'";
+    case Dimension::gauge:
+      return "npi, e.g. '7 npi'";
+  }
+  return "";
+}
+
+}  // namespace
+
+Quantity parsed_quantity(std::string_view text, Dimension dimension) {
+  text = trimmed(text);
+  Quantity result;
+  // E7 is the trade's way to write a gauge of 7 needles per inch
+  if (dimension == Dimension::gauge && text.starts_with('E')) text.remove_prefix(1);
+  std::size_t length = number_at_start(text, result.value);
+  if (length == 0) {
+    result.problem = "expected a number with a unit, not " + quoted(text) + "; units are " +
+                     std::string(examples(dimension));
+    return result;
+  }
+  // folded yarns: 2/28 Nm is two plies of 28 Nm
+  double plies = 1;
+  if (dimension == Dimension::linear_density && length < text.size() && text[length] == '/') {
+    double single = 0;
+    const std::size_t more = number_at_start(text.substr(length + 1), single);
+    if (more > 0) {
+      plies = result.value;
+      result.value = single;
+      length += 1 + more;
+    }
+  }
+  std::string name;
+  for (const char c : text.substr(length)) {
+    if (!is_blank(c) && c != '*' && c != '^') name += c;
+    if (name.size() > 16) break;
+  }
+  for (const Unit& unit : units) {
+    if (unit.dimension != dimension || unit.name != name) continue;
+    result.value = unit.reciprocal ? plies * unit.factor / result.value : plies * unit.factor * result.value;
+    if (!std::isfinite(result.value)) result.problem = "the value " + quoted(text) + " is out of range";
+    return result;
+  }
+  result.problem =
+      name.empty() ? "the unit is missing after " + quoted(text) : "unknown unit " + quoted(name);
+  result.problem += "; write " + std::string(examples(dimension));
+  return result;
+}
+
+}  // namespace loopwright

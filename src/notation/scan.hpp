@@ -1,0 +1,83 @@
+// Small tools that both readers share: lines, words with their columns, numbers, quantities with units.
+#pragma once
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace loopwright {
+
+/// One line of a text without its end; `carriage_return` says that it ended with CR LF.
+struct TextLine {
+  std::string_view text;
+  int number = 0;  // 1-based
+  bool carriage_return = false;
+};
+
+/// Hands out the lines of a text one by one. The last line may lack its end.
+class LineReader {
+ public:
+  explicit LineReader(std::string_view text) : rest_(text) {}
+  bool next(TextLine& line);
+
+ private:
+  std::string_view rest_;
+  int number_ = 0;
+};
+
+/// A word between blanks (space, tab) and the column, 1-based in bytes, at which it starts.
+struct Word {
+  std::string_view text;
+  int column = 0;
+};
+
+/// Hands out the words of a line one by one; nothing is copied, so a line of 100 MB costs nothing extra.
+class WordReader {
+ public:
+  explicit WordReader(std::string_view line, int first_column = 1)
+      : line_(line), first_column_(first_column) {}
+  bool next(Word& word);
+  /// Column just past the last word handed out: where something is missing.
+  int column() const { return first_column_ + static_cast<int>(at_); }
+
+ private:
+  std::string_view line_;
+  std::size_t at_ = 0;
+  int first_column_ = 1;
+};
+
+bool is_blank(char c);
+bool is_digit(char c);
+bool is_letter(char c);
+std::string_view trimmed(std::string_view text);
+std::string lower_case(std::string_view text);
+
+/// A decimal number such as `-0.75`, `+1`, `.5`, `1e-8`; nothing for anything else, infinity and NaN
+/// included.
+std::optional<double> parsed_number(std::string_view text);
+/// A whole number with an optional sign; nothing if it does not fit into an int.
+std::optional<int> parsed_integer(std::string_view text);
+
+/// Text as it may stand in a message: in quotes, cut after 40 bytes, control and non-ASCII bytes as \xNN.
+std::string quoted(std::string_view text);
+
+/// What a quantity measures and, in brackets, the unit that `parsed_quantity` answers in.
+enum class Dimension {
+  length,           // mm
+  linear_density,   // tex
+  force,            // cN
+  bend_stiffness,   // mN mm^2
+  shell_stiffness,  // N/mm^3
+  share,            // 1; `%` is understood
+  gauge             // needles per inch; the unit may be left out
+};
+
+struct Quantity {
+  double value = 0;     // in the unit of its dimension
+  std::string problem;  // empty if the text was understood; else what is wrong and what to write
+};
+
+/// A number with its unit, e.g. `6.2 mm`, `2/28 Nm`, `10 mN mm^2`, `5 %`. A missing unit is a problem except
+/// for shares and gauges.
+Quantity parsed_quantity(std::string_view text, Dimension dimension);
+
+}  // namespace loopwright

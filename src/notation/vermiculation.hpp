@@ -1,0 +1,83 @@
+// Vermiculation: a fabric file as it is written, letter by letter, before it is knitted to its size.
+// The needle diagram and the editor work on this; the machine gets the Program that it compiles to.
+// The grammar is in docs/notation.md.
+#pragma once
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/diagnostics.hpp"
+#include "notation/program.hpp"
+
+namespace loopwright {
+
+/// One letter of a course. g e: stitch on the front, rear bed; v n: tuck on the front, rear bed; T t:
+/// transfer to the front, rear bed; '.': missed needle, the yarn floats past; '-': inactive needle, nothing
+/// is done.
+struct Cell {
+  char letter = '-';
+  SourceLocation at;
+};
+
+/// A racking `Rk` or `rk` written before the cell `before`: 0 leads the pass, cells.size() trails it.
+struct RackMark {
+  std::size_t before = 0;
+  double racking = 0;  // absolute, knitout's sign: Rk is +k, rk is -k
+  SourceLocation at;
+};
+
+/// What the carriage does in one traverse: yarn letters, or transfers, or nothing but racking.
+struct Pass {
+  std::vector<int> yarns;                 // places in Vermiculation::yarns, leading yarn first
+  Direction direction = Direction::none;  // none: back from where the carrier is
+  bool both_beds = false;                 // written `front / rear`
+  std::vector<Cell> cells;                // the front needles if both_beds, else one needle per wale
+  std::vector<Cell> rear;                 // the rear needles if both_beds
+  std::vector<RackMark> racks;
+  SourceLocation at;
+  bool knits() const;      // holds a yarn letter
+  bool transfers() const;  // holds T or t
+};
+
+/// A line: passes that `&` joins. It counts as a course if one of them knits.
+struct CourseLine {
+  std::vector<Pass> passes;
+  bool knits() const;
+};
+
+struct VermiculationYarn {
+  std::string name;  // "A"
+  YarnData data;
+  SourceLocation at;
+};
+
+enum class Gating : std::uint8_t { opposite, half_pitch };
+
+struct Vermiculation {
+  std::string file;
+  int version = 1;
+  FabricSettings settings;
+  std::vector<VermiculationYarn> yarns;
+  std::vector<std::string> carriers;  // machine carriers of the yarns; empty: named as the yarns
+  std::optional<Gating> gating;       // none: half pitch if facing needles knit in the same pass
+  std::vector<std::pair<std::string, std::string>> headers;
+  std::vector<CourseLine> lines;  // with `[ ... ]*n` written out
+};
+
+/// What the caller may want otherwise than the file says, and how much is too much.
+struct FabricOptions {
+  std::optional<Edges> edges;
+  int size_wales = 0, size_courses = 0;  // 0: as in the file
+  std::size_t most_instructions = 20'000'000;
+};
+
+/// Reads the text. What is wrong is said in `diagnostics` with line, column and remedy.
+Vermiculation parse_vermiculation(std::string_view text, Diagnostics& diagnostics);
+
+/// Knits the notation to its size: the Program with window and repeat starts. If `diagnostics` already holds
+/// errors the Program has settings and yarns, but no instructions.
+Program compile_vermiculation(const Vermiculation& vermiculation, const FabricOptions& options,
+                              Diagnostics& diagnostics);
+
+}  // namespace loopwright

@@ -1,0 +1,72 @@
+#include "notation/read_knitout.hpp"
+
+#include <gmock/gmock.h>
+
+#include "notation_test.hpp"
+
+namespace loopwright {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(ReadKnitout, EveryOperation) {
+  Diagnostics diagnostics("all.k");
+  const Program program = read_knitout(
+      ";!knitout-2\n;;Carriers: 1 2 L3\n;;Gauge: 15\ninhook 1\ntuck - f-3 1\nreleasehook 1\nin 2 L3\n"
+      "knit + f+3 2 L3 ; plated\nsplit - bs7 f7 1;\nmiss + b10000 2\ndrop f1\namiss fs-0\nxfer f1 b2\n"
+      "rack -0.75\nrack +1\nstitch -5 10.5\npause\nx-stitch-number 101\nx-vis-color #ff8800 2\nknit + f1\n"
+      "outhook 1\nout 2 L3\n",
+      diagnostics);
+  EXPECT_TRUE(diagnostics.ok()) << said(diagnostics);
+  EXPECT_EQ(diagnostics.warnings(), 0) << said(diagnostics);
+  EXPECT_EQ(
+      listing(program),
+      "inhook 1; tuck - f-3 1; releasehook 1; in 2 L3; knit + f3 2 L3; split - bs7 f7 1; miss + b10000 2; "
+      "drop f1; amiss fs0; xfer f1 b2; rack -0.75; rack 1; stitch; pause; extension; extension 2; knit + f1; "
+      "outhook 1; out 2 L3");
+  EXPECT_EQ(program.settings.gauge_npi, 15);
+  EXPECT_EQ(program.instructions[12].value, -5);
+  EXPECT_EQ(program.instructions[12].value2, 10.5);
+  EXPECT_EQ(program.instructions[14].text, "x-stitch-number 101");
+  EXPECT_EQ(program.yarns[1].colour, "#ff8800");
+  EXPECT_EQ(program.instructions[1].at, (SourceLocation{5, 1}));
+}
+
+TEST(ReadKnitout, SaysWhatIsWrongAndWhere) {
+  const auto said_of = [](const std::string& text) {
+    Diagnostics diagnostics("x.k");
+    read_knitout(text, diagnostics);
+    return said(diagnostics);
+  };
+  const std::string head = ";!knitout-2\n;;Carriers: 1 2\n";
+  EXPECT_THAT(said_of(""), HasSubstr("the file is empty"));
+  EXPECT_THAT(said_of("in 1\n"), HasSubstr("x.k:1:1: error: the first line is not ';!knitout-2' but 'in 1'"));
+  EXPECT_THAT(said_of(";!knitout-2\nin 1\n"), HasSubstr("the Carriers header is missing"));
+  EXPECT_THAT(said_of(";!knitout-3\n;;Carriers: 1\n"), HasSubstr("x.k:1:11: warning: version 3 is newer"));
+  EXPECT_THAT(said_of(head + "purl + f1 1"), HasSubstr("x.k:3:1: error: unknown operation 'purl'"));
+  EXPECT_THAT(said_of(head + "  knit x f1 1"),
+              HasSubstr("x.k:3:8: error: expected a direction, + or -, not 'x'"));
+  EXPECT_THAT(said_of(head + "knit \xe2\x88\x92 f1 1"), HasSubstr("typographic minus"));
+  EXPECT_THAT(said_of(head + "knit + f 1"), HasSubstr("x.k:3:8: error: expected a needle"));
+  EXPECT_THAT(said_of(head + "knit + f10001 1"), HasSubstr("needles run from -10000 to 10000"));
+  EXPECT_THAT(said_of(head + "knit + b-99999999999999999999 1"),
+              HasSubstr("needles run from -10000 to 10000"));
+  EXPECT_THAT(said_of(head + "knit +"), HasSubstr("x.k:3:7: error: the line ends where a needle"));
+  EXPECT_THAT(said_of(head + "knit + f1 3"),
+              HasSubstr("x.k:3:11: error: carrier '3' is not in the Carriers header"));
+  EXPECT_THAT(said_of(head + "knit + f1 1 1"), HasSubstr("x.k:3:13: error: carrier '1' is named twice"));
+  EXPECT_THAT(said_of(head + "xfer f1 b1 1"), HasSubstr("x.k:3:12: error: '1' is too much here"));
+  EXPECT_THAT(said_of(head + "rack nan"), HasSubstr("x.k:3:6: error: expected a racking"));
+  EXPECT_THAT(said_of(head + "rack 1e9"), HasSubstr("racking is out of range"));
+  EXPECT_THAT(said_of(head + "in"), HasSubstr("x.k:3:3: error: the line ends where a carrier was expected"));
+  EXPECT_THAT(said_of(head + "x-fancy 1\nx-fancy 2\n"),
+              HasSubstr("x.k:3:1: warning: unknown extension 'x-fancy'"));
+  EXPECT_THAT(said_of(";!knitout-2\n;;Carriers: 1\n;;Carriers: 2\nin 2\n"),
+              HasSubstr("3:3: warning: header 'Carriers'"));
+  EXPECT_THAT(said_of(";!knitout-2\r\n;;Carriers: 1\r\nin 1\r\n"),
+              HasSubstr("x.k:1:12: warning: the line ends with CR LF"));
+  EXPECT_THAT(said_of(head + "purl + f1 1 ;!source: my.js 17"), HasSubstr("[source: my.js 17]"));
+}
+
+}  // namespace
+}  // namespace loopwright

@@ -3,19 +3,21 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <sstream>
 #include <string>
 
 #include "notation/read_knitout.hpp"
 #include "notation/read_program.hpp"
 #include "notation/read_vermiculation.hpp"
+#include "notation/write_knitout.hpp"
 
 namespace loopwright {
 
 inline std::string text_of(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
 }
 
 inline std::string said(const Diagnostics& diagnostics) {
@@ -33,13 +35,10 @@ inline std::filesystem::path source_dir() { return LOOPWRIGHT_SOURCE_DIR; }
 
 // The program's instructions in words, e.g. "knit + f0 A", separated by "; ".
 inline std::string listing(const Program& program, std::size_t first = 0, std::size_t count = 100000) {
-  static const char* const names[] = {"in",   "inhook", "releasehook", "out",  "outhook", "stitch",
-                                      "rack", "pause",  "extension",   "knit", "tuck",    "split",
-                                      "miss", "drop",   "amiss",       "xfer"};
   std::ostringstream out;
   for (std::size_t i = first; i < program.instructions.size() && i < first + count; ++i) {
     const Instruction& each = program.instructions[i];
-    out << (i > first ? "; " : "") << names[static_cast<int>(each.op)];
+    out << (i > first ? "; " : "") << name_of(each.op);
     if (each.op == Op::rack) out << ' ' << each.value;
     if (each.direction != Direction::none) out << (each.direction == Direction::right ? " +" : " -");
     if (each.op >= Op::knit) out << ' ' << to_string(each.needle);

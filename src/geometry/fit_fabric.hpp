@@ -1,0 +1,17 @@
+// YarnCurves -> Fabric: uniform cubic B-splines with segments of equal rest length.
+#pragma once
+#include "geometry/fabric.hpp"
+#include "geometry/geometry_options.hpp"
+
+namespace loopwright {
+
+struct FitOptions {
+  double segments_per_loop = 12;  // for a loop of loop_length
+};
+
+// The C2 cubic through a yarn's type value points is sampled at equal steps of rest length and the samples
+// are interpolated. A yarn has round(rest length / segment) segments, at least 4 (periodic: 6).
+Fabric fit_fabric(const YarnCurves& curves, const YarnGraph& graph, const GeometryOptions& options,
+                  const FitOptions& fit = {});
+
+}  // namespace loopwright

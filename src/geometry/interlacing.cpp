@@ -1,0 +1,206 @@
+#include "geometry/interlacing.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <unordered_map>
+
+namespace loopwright {
+namespace {
+
+constexpr int samples_per_segment = 4;
+// Of a loop's length, from its top: where the neck of its head is, how far its foot reaches, how far yarn may
+// slide.
+constexpr double neck = 0.38, foot_reach = 0.56, most_slide = 0.42, climb_window = 0.1;
+
+// One yarn as a polyline that can be asked beyond its ends where it is periodic.
+class SampledYarn {
+ public:
+  SampledYarn(const Fabric& fabric, const FabricYarn& yarn)
+      : points_(polyline(fabric, yarn, samples_per_segment)),
+        periodic_(yarn.periodic),
+        shift_(fabric.lattice(yarn.shift[0], yarn.shift[1])),
+        length_(yarn.segment_rest_length) {
+    if (periodic_) points_.pop_back();
+  }
+  Vec3 at(int i) const {
+    const int n = static_cast<int>(points_.size());
+    if (!periodic_) return points_[static_cast<std::size_t>(std::clamp(i, 0, n - 1))];
+    const int turns = i >= 0 ? i / n : -((n - 1 - i) / n);
+    return points_[static_cast<std::size_t>(i - turns * n)] + shift_ * turns;
+  }
+  int clamp(int i) const { return periodic_ ? i : std::clamp(i, 0, static_cast<int>(points_.size()) - 1); }
+  int index(double t) const { return static_cast<int>(std::lround(t * samples_per_segment)); }
+  double steps(double rest_length) const { return rest_length / length_ * samples_per_segment; }
+
+ private:
+  std::vector<Vec3> points_;
+  bool periodic_;
+  Vec3 shift_;
+  double length_;
+};
+
+struct LoopWindow {
+  const SampledYarn* yarn = nullptr;
+  double loop = 0;                         // a loop's length in samples
+  int begin = 0, apex = 0, end = 0;        // nominal, in samples
+  double half_before = 0, half_after = 0;  // of the loop's own yarn, floats left out
+  Direction direction = Direction::right;
+};
+
+Vec3 centroid(const LoopWindow& window) {
+  const int first = window.yarn->clamp(window.apex - static_cast<int>(window.half_before));
+  const int last = window.yarn->clamp(window.apex + static_cast<int>(window.half_after));
+  Vec3 sum;
+  for (int i = first; i <= last; ++i) sum += window.yarn->at(i);
+  return sum / (last - first + 1);
+}
+
+// Climbs along `up` from the nominal apex to the top of the head.
+int top_of_head(const LoopWindow& window, const Vec3& up) {
+  const int reach = std::max(2, static_cast<int>(climb_window * window.loop));
+  const int limit = static_cast<int>(most_slide * window.loop);
+  int top = window.apex;
+  while (true) {
+    int best = top;
+    for (int i = top - reach; i <= top + reach; ++i) {
+      const int k = window.yarn->clamp(i);
+      if (std::abs(k - window.apex) > limit) continue;
+      if (dot(up, window.yarn->at(k)) > dot(up, window.yarn->at(best)) + 1e-12) best = k;
+    }
+    if (best == top) return top;
+    top = best;
+  }
+}
+
+std::vector<Vec3> piece(const SampledYarn& yarn, int first, int last, const Vec3& moved) {
+  std::vector<Vec3> points;
+  first = yarn.clamp(first);
+  last = yarn.clamp(last);
+  for (int i = first; i <= last; ++i) points.push_back(yarn.at(i) + moved);
+  return points;
+}
+
+// A closed polygon with a fan of triangles from its centre.
+class Fan {
+ public:
+  explicit Fan(std::vector<Vec3> rim) : rim_(std::move(rim)), low_(rim_.front()), high_(rim_.front()) {
+    Vec3 sum;
+    for (const Vec3& p : rim_) {
+      sum += p;
+      for (int k = 0; k < 3; ++k) {
+        low_[k] = std::min(low_[k], p[k]);
+        high_[k] = std::max(high_[k], p[k]);
+      }
+    }
+    centre_ = sum / static_cast<double>(rim_.size());
+  }
+
+  // Signed number of passes of the polyline; + along the right-hand normal of the rim's sense. A zero counts
+  // as positive everywhere, by the same value for all triangles that share it, so that a pass through an edge
+  // or a corner counts once.
+  int passes(std::span<const Vec3> line) const {
+    int sum = 0;
+    for (std::size_t k = 0; k + 1 < line.size(); ++k)
+      if (near(line[k], line[k + 1])) sum += passes(line[k], line[k + 1]);
+    return sum;
+  }
+
+ private:
+  bool near(const Vec3& p, const Vec3& q) const {
+    for (int k = 0; k < 3; ++k)
+      if (std::max(p[k], q[k]) < low_[k] || std::min(p[k], q[k]) > high_[k]) return false;
+    return true;
+  }
+  int passes(const Vec3& p, const Vec3& q) const {
+    const Vec3 along = q - p, spoke_normal = cross(along, centre_ - p);
+    const auto spoke = [&](const Vec3& a) { return dot(spoke_normal, a - p) >= 0; };
+    int sum = 0;
+    bool before = spoke(rim_.back());
+    for (std::size_t i = 0; i < rim_.size(); ++i) {
+      const Vec3& a = i > 0 ? rim_[i - 1] : rim_.back();
+      const Vec3& b = rim_[i];
+      const bool after = spoke(b);
+      const bool spoke_a = before;
+      before = after;
+      if (spoke_a == after) continue;  // the line must see the two spokes on different sides
+      const bool rim_side = dot(cross(along, a - p), b - p) >= 0;
+      if (rim_side != spoke_a) continue;
+      const Vec3 normal = cross(a - centre_, b - centre_);
+      const bool p_above = dot(normal, p - centre_) >= 0, q_above = dot(normal, q - centre_) >= 0;
+      if (p_above != q_above) sum += q_above ? 1 : -1;
+    }
+    return sum;
+  }
+
+  std::vector<Vec3> rim_;
+  Vec3 low_, high_, centre_;
+};
+
+bool is_intact(const LoopWindow& parent, const LoopWindow& child, const Vec3& moved, int sign) {
+  const Vec3 up = centroid(child) + moved - centroid(parent);
+  const int head = top_of_head(parent, up), child_head = top_of_head(child, up);
+  const double neck_share = neck / 0.5;
+  const Fan fan(piece(*parent.yarn, head - static_cast<int>(std::lround(neck_share * parent.half_before)),
+                      head + static_cast<int>(std::lround(neck_share * parent.half_after)), Vec3{}));
+  const int slide = child_head - child.apex;
+  const int first = std::max(child.begin + slide, child_head - static_cast<int>(foot_reach * child.loop));
+  const int last = std::min(child.end + slide, child_head + static_cast<int>(foot_reach * child.loop));
+  const int sense =
+      parent.direction == Direction::left ? 1 : -1;  // the rim's normal points to the front, to the rear
+  return sense * fan.passes(piece(*child.yarn, first, child_head, moved)) == sign &&
+         sense * fan.passes(piece(*child.yarn, child_head, last, moved)) == -sign;
+}
+
+}  // namespace
+
+InterlacingCheck check_interlacings(const Fabric& fabric) {
+  InterlacingCheck check;
+  check.expected = static_cast<int>(fabric.interlacings.size());
+  std::vector<SampledYarn> yarns;
+  for (const FabricYarn& yarn : fabric.yarns) yarns.emplace_back(fabric, yarn);
+
+  // A loop's own half length: the shorter half of the median loop, so that floats do not count.
+  std::vector<double> halves;
+  for (const LoopSpan& span : fabric.loops)
+    if (span.kind != LoopKind::tuck)
+      halves.push_back(std::min(span.apex - span.begin, span.end - span.apex) *
+                       fabric.yarns[static_cast<std::size_t>(span.yarn)].segment_rest_length);
+  double half = 1;
+  if (!halves.empty()) {
+    const auto middle = halves.begin() + static_cast<std::ptrdiff_t>(halves.size() / 2);
+    std::nth_element(halves.begin(), middle, halves.end());
+    half = *middle;
+  }
+
+  std::unordered_map<LoopId, LoopWindow> windows;
+  for (const LoopSpan& span : fabric.loops) {
+    const SampledYarn& yarn = yarns[static_cast<std::size_t>(span.yarn)];
+    LoopWindow window;
+    window.yarn = &yarn;
+    window.loop = 2 * yarn.steps(half);
+    window.begin = yarn.index(span.begin);
+    window.apex = yarn.index(span.apex);
+    window.end = yarn.index(span.end);
+    window.half_before = std::min<double>(window.apex - window.begin, window.loop / 2);
+    window.half_after = std::min<double>(window.end - window.apex, window.loop / 2);
+    window.direction = span.direction;
+    windows.emplace(span.loop, window);
+  }
+  for (std::size_t k = 0; k < fabric.interlacings.size(); ++k) {
+    const PlacedInterlacing& interlacing = fabric.interlacings[k];
+    const auto parent = windows.find(interlacing.parent), child = windows.find(interlacing.child);
+    const bool intact =
+        parent != windows.end() && child != windows.end() &&
+        is_intact(parent->second, child->second, fabric.lattice(interlacing.shift[0], interlacing.shift[1]),
+                  interlacing.sign);
+    if (intact)
+      ++check.intact;
+    else
+      check.broken.push_back(static_cast<int>(k));
+  }
+  return check;
+}
+
+}  // namespace loopwright

@@ -1,0 +1,283 @@
+#include "geometry/layout.hpp"
+
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
+
+#include "geometry/held_events.hpp"
+
+namespace loopwright {
+namespace {
+
+// Weights of the least-squares rows. Yarn decides; what lies over each other without being drawn through each
+// other only settles what yarn leaves open (e.g. the level of one rib of an interlock against the other).
+constexpr double yarn_weight = 1, covered_tuck_weight = 0.1, passed_weight = 0.15, opposite_weight = 0.03;
+// A held loop grows by this share of a course for every float or tuck that must find room along its legs.
+constexpr double growth_per_event = 0.45, most_growth = 2.5;
+constexpr double tuck_height = 0.6;  // of a course, where nothing is held below it
+constexpr double anchor_weight = 1e-6;
+
+class Nodes {  // union-find: lower nodes 0 .. n-1, upper nodes n .. 2n-1
+ public:
+  explicit Nodes(std::size_t loops) : parent_(2 * loops), loops_(loops) {
+    std::iota(parent_.begin(), parent_.end(), std::size_t{0});
+  }
+  std::size_t lower(LoopId id) { return find(id.position()); }
+  std::size_t upper(LoopId id) { return find(loops_ + id.position()); }
+  void merge(std::size_t a, std::size_t b) {
+    parent_[std::max(find(a), find(b))] = std::min(find(a), find(b));
+  }
+  std::size_t find(std::size_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+
+ private:
+  std::vector<std::size_t> parent_;
+  std::size_t loops_;
+};
+
+// Rows sum_k coefficient_k y_k = target, weighted; solved by normal equations.
+class LeastSquares {
+ public:
+  explicit LeastSquares(std::size_t unknowns)
+      : right_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(unknowns))) {}
+
+  struct Term {
+    std::size_t unknown;
+    double coefficient;
+  };
+  void add_row(std::initializer_list<Term> terms, double target, double weight) {
+    for (const Term& a : terms) {
+      for (const Term& b : terms)
+        entries_.emplace_back(static_cast<int>(a.unknown), static_cast<int>(b.unknown),
+                              weight * a.coefficient * b.coefficient);
+      right_[static_cast<Eigen::Index>(a.unknown)] += weight * a.coefficient * target;
+    }
+  }
+  Eigen::VectorXd solve() const {
+    Eigen::SparseMatrix<double> matrix(right_.size(), right_.size());
+    matrix.setFromTriplets(entries_.begin(), entries_.end());
+    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors(matrix);
+    return factors.solve(right_);
+  }
+
+ private:
+  std::vector<Eigen::Triplet<double>> entries_;
+  Eigen::VectorXd right_;
+};
+
+Nodes binding_nodes(const YarnGraph& graph) {
+  Nodes nodes(graph.loops.size());
+  for (std::size_t i = 0; i < graph.loops.size(); ++i)
+    for (const LoopId parent : graph.loops[i].parents)
+      nodes.merge(nodes.lower(LoopId(i)), nodes.upper(parent));
+  for (const std::vector<LoopId>& stack : head_stacks(graph))
+    for (const LoopId id : stack) nodes.merge(nodes.upper(stack.front()), nodes.upper(id));
+  return nodes;
+}
+
+double warp_rest(const Loop& loop, std::size_t events, double course_pitch) {
+  if (loop.kind == LoopKind::tuck) return tuck_height * course_pitch;
+  return course_pitch * (1 + std::min(most_growth, growth_per_event * static_cast<double>(events)));
+}
+
+// The loop on the needle that faced a new loop's needle while it was made, if any: by time, over (bed, half
+// slots).
+class FacingLoops {
+ public:
+  LoopId facing(const YarnGraph& graph, const Loop& loop) const {
+    const Bed bed = is_front(loop.bed) ? Bed::back : Bed::front;
+    LoopId newest;
+    for (int half : {-1, 0, 1}) {
+      const auto found = last_.find({bed, key(loop.slot) + half});
+      if (found == last_.end()) continue;
+      const Loop& other = graph.loop(found->second);
+      const bool held = other.head_instruction < 0 || other.head_instruction > loop.instruction;
+      if (held && (!newest.valid() || newest < found->second)) newest = found->second;
+    }
+    return newest;
+  }
+  void add(const Loop& loop, LoopId id) {
+    if (loop.head_bed == loop.bed) last_[{is_front(loop.bed) ? Bed::front : Bed::back, key(loop.slot)}] = id;
+  }
+
+ private:
+  static int key(double slot) { return static_cast<int>(std::lround(2 * slot)); }
+  std::map<std::pair<Bed, int>, LoopId> last_;
+};
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+Eigen::VectorXd levels(const YarnGraph& graph, const GeometryOptions& options, Nodes& nodes,
+                       const HeldEvents& events) {
+  LeastSquares rows(2 * graph.loops.size());
+  for (std::size_t i = 0; i < 2 * graph.loops.size(); ++i) rows.add_row({{i, 1}}, 0, anchor_weight);
+
+  std::vector<bool> covers(graph.loops.size());  // tucks with a held loop below them
+  for (std::size_t i = 0; i < graph.loops.size(); ++i)
+    for (const HeldEvent& event : events.of_loop[i]) {
+      const LoopId held(i);
+      if (!event.tuck.valid()) continue;
+      covers[event.tuck.position()] = true;
+      const double share = events.share_of_tuck(held, event.tuck);
+      rows.add_row(
+          {{nodes.lower(event.tuck), 1}, {nodes.lower(held), share - 1}, {nodes.upper(held), -share}}, 0,
+          passed_weight);
+    }
+  FacingLoops facing_loops;
+  for (std::size_t i = 0; i < graph.loops.size(); ++i) {
+    const LoopId id(i);
+    const Loop& loop = graph.loops[i];
+    const double weight = covers[i] ? covered_tuck_weight : yarn_weight;
+    rows.add_row({{nodes.upper(id), 1}, {nodes.lower(id), -1}},
+                 warp_rest(loop, events.of_loop[i].size(), options.course_pitch), weight);
+    if (const LoopId held = facing_loops.facing(graph, loop); held.valid())
+      rows.add_row({{nodes.lower(id), 1}, {nodes.lower(held), -0.5}, {nodes.upper(held), -0.5}}, 0,
+                   opposite_weight);
+    facing_loops.add(loop, id);
+  }
+  for (std::size_t y = 0; y < graph.yarns.size(); ++y) {
+    const GraphYarn& yarn = graph.yarns[y];
+    for (std::size_t k = 0; k < yarn.floats.size(); ++k) {
+      const Float& yarn_float = yarn.floats[k];
+      if (!yarn_float.from.valid() || !yarn_float.to.valid()) continue;
+      const Loop& from = graph.loop(yarn_float.from);
+      const Loop& to = graph.loop(yarn_float.to);
+      const double span = to.slot - from.slot;
+      const bool turns = from.direction != to.direction;  // the next course: no reason to lie at one level
+      if (!turns)
+        rows.add_row({{nodes.lower(yarn_float.to), 1}, {nodes.lower(yarn_float.from), -1}}, 0,
+                     yarn_weight / std::max(1.0, std::abs(span)));
+      for (const PassedLoop& passed : yarn_float.passed) {
+        const double along =
+            std::abs(span) < 1e-9 ? 0.5 : std::clamp((passed.slot - from.slot) / span, 0.0, 1.0);
+        const double share = events.share_of_float(passed.loop, static_cast<int>(y), static_cast<int>(k));
+        rows.add_row({{nodes.lower(yarn_float.from), 1 - along},
+                      {nodes.lower(yarn_float.to), along},
+                      {nodes.lower(passed.loop), share - 1},
+                      {nodes.upper(passed.loop), -share}},
+                     0, passed_weight);
+      }
+    }
+  }
+  return rows.solve();
+}
+
+std::vector<std::uint8_t> faced_loops(const YarnGraph& graph) {
+  std::vector<std::uint8_t> faced(graph.loops.size(), 0);
+  FacingLoops facing_loops;
+  for (std::size_t i = 0; i < graph.loops.size(); ++i) {
+    if (const LoopId held = facing_loops.facing(graph, graph.loops[i]); held.valid())
+      faced[i] = faced[held.position()] = 1;
+    facing_loops.add(graph.loops[i], LoopId(i));
+  }
+  return faced;
+}
+
+// z of every node: the mean of the loops that have their feet there, by the bed that they were formed on; a
+// head that nothing was drawn through stays at its own bed.
+std::vector<double> node_heights(const YarnGraph& graph, const GeometryOptions& options, Nodes& nodes,
+                                 const std::vector<std::uint8_t>& faced) {
+  std::vector<double> sum(2 * graph.loops.size()), count(sum.size());
+  std::vector<double> offset;
+  for (const std::uint8_t over : faced)
+    offset.push_back(over != 0 ? options.overlap_offset : options.two_bed_offset);
+  for (std::size_t i = 0; i < graph.loops.size(); ++i) {
+    const std::size_t node = nodes.lower(LoopId(i));
+    sum[node] += (is_front(graph.loops[i].bed) ? 1 : -1) * offset[i] * options.shape_radius();
+    count[node] += 1;
+  }
+  for (std::size_t i = 0; i < graph.loops.size(); ++i) {
+    const std::size_t node = nodes.upper(LoopId(i));
+    if (count[node] > 0) continue;
+    sum[node] = (is_front(graph.loops[i].head_bed) ? 1 : -1) * offset[i] * options.shape_radius();
+  }
+  for (std::size_t i = 0; i < sum.size(); ++i)
+    if (count[i] > 0) sum[i] /= count[i];
+  return sum;
+}
+
+}  // namespace
+
+double slots_per_wale(const YarnGraph& graph) {
+  std::set<double> slots[2];
+  for (const Loop& loop : graph.loops) slots[is_front(loop.bed) ? 0 : 1].insert(loop.slot);
+  std::vector<double> gaps;
+  for (const std::set<double>& bed : slots)
+    for (auto slot = bed.begin(); slot != bed.end() && std::next(slot) != bed.end(); ++slot)
+      gaps.push_back(*std::next(slot) - *slot);
+  std::vector<double> steps;
+  for (const GraphYarn& yarn : graph.yarns)
+    for (std::size_t k = 0; k + 1 < yarn.loops.size(); ++k) {
+      const Loop& from = graph.loop(yarn.loops[k]);
+      const Loop& to = graph.loop(yarn.loops[k + 1]);
+      if (from.direction == to.direction) steps.push_back(std::abs(to.slot - from.slot));
+    }
+  if (steps.empty()) return 1;
+  // A full rib steps 0 and 1 in turn, or 1/2 and 1/2: its mean says 1/2 either way, where most steps are
+  // small.
+  std::vector<double> small;
+  for (const double step : steps)
+    if (step < 1.25) small.push_back(step);
+  const double mean =
+      small.empty() ? 1
+                    : std::accumulate(small.begin(), small.end(), 0.0) / static_cast<double>(small.size());
+  const double step = small.size() * 2 > steps.size() ? std::max(0.5, mean) : median(steps);
+  const double gap = gaps.empty() ? 1 : median(gaps);
+  return std::clamp(step < 0.75 ? 0.5 : std::min(step, std::max(gap, 1.0)), 0.5, 3.0);
+}
+
+Layout lay_out(const YarnGraph& graph, const GeometryOptions& options) {
+  Layout layout;
+  if (graph.loops.empty()) return layout;
+  Nodes nodes = binding_nodes(graph);
+  const HeldEvents events = held_events(graph);
+  const Eigen::VectorXd y = levels(graph, options, nodes, events);
+  bool front = false, back = false;
+  for (const Loop& loop : graph.loops) (is_front(loop.bed) ? front : back) = true;
+  layout.two_beds = front && back;
+  layout.faced = faced_loops(graph);
+  const std::vector<double> z = layout.two_beds ? node_heights(graph, options, nodes, layout.faced)
+                                                : std::vector<double>(2 * graph.loops.size(), 0);
+  layout.slot_pitch = options.wale_pitch / slots_per_wale(graph);
+
+  const std::size_t n = graph.loops.size();
+  layout.lower.resize(n);
+  layout.upper.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Loop& loop = graph.loops[i];
+    const std::size_t low = nodes.lower(LoopId(i)), high = nodes.upper(LoopId(i));
+    layout.lower[i] = {loop.slot * layout.slot_pitch, y[static_cast<Eigen::Index>(low)], z[low]};
+    // The head lies where its children's feet stand; a head without children where its needle was.
+    const double head_slot = loop.children.empty() ? loop.head_slot : graph.loop(loop.children.front()).slot;
+    layout.upper[i] = {head_slot * layout.slot_pitch, y[static_cast<Eigen::Index>(high)], z[high]};
+  }
+  // A binding point with little room above or below it gets a flatter template, the same for all that meet
+  // there.
+  std::vector<double> scale(2 * n, 1);
+  for (std::size_t i = 0; i < n; ++i) {
+    if (graph.loops[i].kind == LoopKind::tuck) continue;
+    const double room = (layout.upper[i].y - layout.lower[i].y) / (0.75 * options.course_pitch);
+    for (const std::size_t node : {nodes.lower(LoopId(i)), nodes.upper(LoopId(i))})
+      scale[node] = std::clamp(room, 0.3, scale[node]);
+  }
+  layout.y_scale_lower.resize(n);
+  layout.y_scale_upper.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    layout.y_scale_lower[i] = scale[nodes.lower(LoopId(i))];
+    layout.y_scale_upper[i] = scale[nodes.upper(LoopId(i))];
+  }
+  return layout;
+}
+
+}  // namespace loopwright

@@ -1,0 +1,163 @@
+#include "geometry/type_points.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/assemble.hpp"
+#include "geometry/loop_signs.hpp"
+#include "geometry/sinkers.hpp"
+
+namespace loopwright {
+namespace {
+
+class LoopPlacer {
+ public:
+  LoopPlacer(const YarnGraph& graph, const GeometryOptions& options, const Layout& layout,
+             const std::vector<LoopSigns>& signs)
+      : graph_(graph),
+        layout_(layout),
+        signs_(signs),
+        r_(options.shape_radius()),
+        sx_(options.wale_pitch / 8),
+        sy_(options.course_pitch / 7) {}
+
+  PlacedLoop place(LoopId id) const {
+    const Loop& loop = graph_.loop(id);
+    const double first_side = loop.direction == Direction::left ? 1 : -1;
+    PlacedLoop placed;
+    std::vector<TypePoint>& points = placed.points;
+    half(id, first_side, points);
+    placed.apex = points.size();
+    points.push_back(apex(id));
+    std::vector<TypePoint> second;
+    half(id, -first_side, second);
+    points.insert(points.end(), second.rbegin(), second.rend());
+    return placed;
+  }
+
+ private:
+  TypePoint point(LoopId id, LoopPart part, Vec3 position) const {
+    TypePoint p;
+    p.position = position;
+    p.loop = id;
+    p.part = part;
+    p.at = graph_.loop(id).at;
+    return p;
+  }
+  // O or P plus an offset in r.
+  Vec3 at_lower(LoopId id, double x, double y, double z) const {
+    const std::size_t i = id.position();
+    return layout_.lower[i] + Vec3{x * sx_, y * sy_ * layout_.y_scale_lower[i], z * r_};
+  }
+  Vec3 at_upper(LoopId id, double x, double y, double z) const {
+    const std::size_t i = id.position();
+    return layout_.upper[i] + Vec3{x * sx_, y * sy_ * layout_.y_scale_upper[i], z * r_};
+  }
+  // A place on a leg between O and P: `across` from their line, at right angles to it, so that leaning loops
+  // keep their legs apart.
+  Vec3 on_leg(LoopId id, double share, double across, double z) const {
+    const std::size_t i = id.position();
+    const Vec3& low = layout_.lower[i];
+    const Vec3& high = layout_.upper[i];
+    Vec3 along{high.x - low.x, high.y - low.y, 0};
+    along = norm(along) > 1e-9 ? normalized(along) : Vec3{0, 1, 0};
+    const Vec3 outward{along.y, -along.x, 0};
+    return low + (high - low) * share + outward * (across * sx_) + Vec3{0, 0, z * r_};
+  }
+  bool leans(LoopId id) const {
+    const std::size_t i = id.position();
+    return std::abs(layout_.upper[i].x - layout_.lower[i].x) > 0.4 * 8 * sx_;
+  }
+
+  void half(LoopId id, double side, std::vector<TypePoint>& points) const {
+    if (graph_.loop(id).kind == LoopKind::tuck) {
+      tuck_half(id, side, points);
+      return;
+    }
+    const LoopSigns& sign = signs_[id.position()];
+    const double s = sign.s, c = sign.c, spread = sign.foot_spread;
+    const double foot = sign.foot_layer, head = sign.head_layer;
+    // Legs that cross others keep clear of them over most of their length; near the binding points only in
+    // the direction in which the stitch goes anyway.
+    const double low_share = sign.leg_offset * s > 0 ? 0.5 : 0,
+                 high_share = sign.leg_offset * c > 0 ? 0.5 : 0;
+    points.push_back(
+        point(id, LoopPart::foot, at_lower(id, side * (2.556 + spread), -1.556, foot - s * sign.foot_reach)));
+    points.push_back(point(id, LoopPart::foot, at_lower(id, side * (1 + spread), 0, foot)));
+    points.push_back(point(id, LoopPart::leg,
+                           at_lower(id, side * (1.444 + spread), 1.556,
+                                    foot + s * sign.foot_reach + low_share * sign.leg_offset)));
+    const auto leg = [&](double share, double across, double bulge) {
+      const double layer = std::abs(foot) > 0 ? foot + (head - foot) * share : head;
+      points.push_back(
+          point(id, LoopPart::leg, on_leg(id, share, side * across, bulge + layer + sign.leg_offset)));
+    };
+    if (leans(id)) {
+      leg(0.3, 1.8, 1.5 * (0.7 * s + 0.3 * c));
+      leg(0.5, 2, 0.75 * (s + c));
+      leg(0.7, 2.2, 1.5 * (0.3 * s + 0.7 * c));
+    } else {
+      leg(0.5, 2, 0.75 * (s + c));
+    }
+    head_half(id, side, head + high_share * sign.leg_offset, points);
+  }
+
+  // From the crossing of the upper leg with the child's foot to the crossing of the head with the child's
+  // leg.
+  void head_half(LoopId id, double side, double upper_leg_layer, std::vector<TypePoint>& points) const {
+    const LoopSigns& sign = signs_[id.position()];
+    const double c = sign.c, wide = sign.head_spread, head = sign.head_layer;
+    points.push_back(
+        point(id, LoopPart::leg, at_upper(id, side * (2.556 + wide), -1.556, upper_leg_layer + c)));
+    points.push_back(point(id, LoopPart::leg, at_upper(id, side * (3 + wide), 0, head)));
+    points.push_back(
+        point(id, LoopPart::head, at_upper(id, side * (1.444 + wide), 1.556 + 0.4 * wide, head - c)));
+  }
+  TypePoint apex(LoopId id) const {
+    const LoopSigns& sign = signs_[id.position()];
+    return point(id, LoopPart::head,
+                 at_upper(id, 0, 3 + 0.4 * sign.head_spread, sign.head_layer - 1.5 * sign.c));
+  }
+
+  // A tuck's feet pass through nothing: they stand wide, outside the legs of the loop that the tuck lies on.
+  void tuck_half(LoopId id, double side, std::vector<TypePoint>& points) const {
+    const LoopSigns& sign = signs_[id.position()];
+    const double c = sign.c, s = sign.s, head = sign.head_layer;
+    points.push_back(point(id, LoopPart::foot, at_lower(id, side * 3.4, -1.5, -1.2 * s)));
+    points.push_back(point(id, LoopPart::leg, on_leg(id, 0.35, side * 3.2, head - 0.5 * s)));
+    points.push_back(point(id, LoopPart::leg, at_upper(id, side * 3.3, -1.556, head + 0.7 * c)));
+    points.push_back(point(id, LoopPart::leg, at_upper(id, side * 3.3, 0, head)));
+    points.push_back(point(id, LoopPart::head, at_upper(id, side * 1.6, 1.7, head - c)));
+  }
+
+  const YarnGraph& graph_;
+  const Layout& layout_;
+  const std::vector<LoopSigns>& signs_;
+  double r_, sx_, sy_;
+};
+
+}  // namespace
+
+PlacedPiece place_type_points(const YarnGraph& graph, const GeometryOptions& options) {
+  PlacedPiece piece;
+  piece.layout = lay_out(graph, options);
+  const std::vector<LoopSigns> signs = loop_signs(graph, piece.layout, options.shape_radius());
+  const LoopPlacer placer(graph, options, piece.layout, signs);
+  piece.loops.reserve(graph.loops.size());
+  for (std::size_t i = 0; i < graph.loops.size(); ++i) piece.loops.push_back(placer.place(LoopId(i)));
+  place_sinkers(graph, options, signs, piece);
+  return piece;
+}
+
+double rest_length_of(const Loop& loop, const PlacedSinker& before, const PlacedSinker& after,
+                      const GeometryOptions& options) {
+  const double own = loop.kind == LoopKind::tuck ? options.tuck_length : options.loop_length;
+  return own + (before.extra_length + after.extra_length) / 2;
+}
+
+YarnCurves build_yarn_curves(const YarnGraph& graph, const GeometryOptions& options) {
+  const PlacedPiece piece = place_type_points(graph, options);
+  return assemble_runs(graph, options, piece, whole_yarns(graph));
+}
+
+}  // namespace loopwright

@@ -1,0 +1,117 @@
+#include "geometry/window.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "geometry/assemble.hpp"
+
+namespace loopwright {
+namespace {
+
+// A tube: at most of its turns the yarn goes over to the other bed.
+bool is_tube(const YarnGraph& graph) {
+  int turns = 0, changes = 0;
+  for (const GraphYarn& yarn : graph.yarns)
+    for (std::size_t k = 0; k + 1 < yarn.loops.size(); ++k) {
+      const Loop& from = graph.loop(yarn.loops[k]);
+      const Loop& to = graph.loop(yarn.loops[k + 1]);
+      if (from.direction == to.direction) continue;
+      ++turns;
+      if (is_front(from.bed) != is_front(to.bed)) ++changes;
+    }
+  return turns > 0 && 10 * changes > 6 * turns;
+}
+
+}  // namespace
+
+LoopSelection middle_window(const YarnGraph& graph, const Layout& layout, int wales, int courses) {
+  const std::size_t n = graph.loops.size();
+  LoopSelection selection(n, 1);
+  if (n == 0) return selection;
+  std::vector<double> slots;
+  for (const Loop& loop : graph.loops) slots.push_back(loop.slot);
+  std::sort(slots.begin(), slots.end());
+  slots.erase(std::unique(slots.begin(), slots.end(), [](double a, double b) { return b - a < 0.25; }),
+              slots.end());
+  std::size_t columns = slots.size();
+  if (wales > 0 && static_cast<std::size_t>(wales) < slots.size() && !is_tube(graph)) {
+    columns = static_cast<std::size_t>(wales);
+    const std::size_t first = (slots.size() - columns) / 2;
+    const double low = slots[first] - 0.125, high = slots[first + columns - 1] + 0.125;
+    for (std::size_t i = 0; i < n; ++i)
+      selection[i] = graph.loops[i].slot >= low && graph.loops[i].slot <= high;
+  }
+  if (courses <= 0) return selection;
+
+  // Courses grow from the middle level until there are wales x courses loops, two layers counted as two.
+  std::vector<double> levels;
+  double faced = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (selection[i] == 0) continue;
+    levels.push_back(layout.lower[i].y);
+    faced += layout.faced[i];
+  }
+  const double layers = 1 + faced / static_cast<double>(levels.size());
+  const double wanted = static_cast<double>(columns) * courses * layers;
+  if (wanted >= static_cast<double>(levels.size())) return selection;
+  std::sort(levels.begin(), levels.end());
+  const double middle = (levels[levels.size() / 2] + levels[(levels.size() - 1) / 2]) / 2;
+  std::vector<double> distances;
+  for (const double level : levels) distances.push_back(std::abs(level - middle));
+  std::sort(distances.begin(), distances.end());
+  // A limit in the largest step near the wanted count, so that a course is not cut by rounding.
+  const std::size_t count = static_cast<std::size_t>(wanted);
+  std::size_t best = count;
+  double widest = -1;
+  const std::size_t slack = columns;
+  for (std::size_t k = std::max<std::size_t>(count, slack) - slack / 2;
+       k < std::min(count + slack, distances.size()); ++k) {
+    if (k == 0) continue;
+    const double step = distances[k] - distances[k - 1];
+    if (step > widest * 1.5 + 1e-9 || (step > widest - 1e-9 && k <= count)) {
+      widest = step;
+      best = k;
+    }
+  }
+  const double limit = (distances[best] + distances[best - 1]) / 2;
+  for (std::size_t i = 0; i < n; ++i)
+    if (std::abs(layout.lower[i].y - middle) > limit) selection[i] = 0;
+  return selection;
+}
+
+LoopSelection program_window(const YarnGraph& graph, const ProgramWindow& window) {
+  LoopSelection selection(graph.loops.size(), 1);
+  if (window.needles <= 0 && window.instructions <= 0) return selection;
+  for (std::size_t i = 0; i < graph.loops.size(); ++i) {
+    const Loop& loop = graph.loops[i];
+    const bool needle =
+        window.needles <= 0 || (loop.slot > window.first_needle - 0.5 &&
+                                loop.slot < window.first_needle + window.needles - 0.5 + 1e-9);
+    const bool time =
+        window.instructions <= 0 || (loop.instruction >= window.first_instruction &&
+                                     loop.instruction < window.first_instruction + window.instructions);
+    selection[i] = needle && time;
+  }
+  return selection;
+}
+
+YarnCurves cut_window(const YarnGraph& graph, const GeometryOptions& options, const PlacedPiece& piece,
+                      const LoopSelection& selection) {
+  std::vector<YarnRun> runs;
+  for (const YarnRun& whole : whole_yarns(graph)) {
+    const GraphYarn& yarn = graph.yarns[static_cast<std::size_t>(whole.yarn)];
+    for (int k = 0; k < whole.count; ++k) {
+      if (selection[yarn.loops[static_cast<std::size_t>(k)].position()] == 0) continue;
+      const bool joins =
+          !runs.empty() && runs.back().yarn == whole.yarn && runs.back().first + runs.back().count == k;
+      if (joins)
+        ++runs.back().count;
+      else
+        runs.push_back({whole.yarn, k, 1});
+    }
+  }
+  return assemble_runs(graph, options, piece, runs);
+}
+
+}  // namespace loopwright

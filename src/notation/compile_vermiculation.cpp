@@ -150,20 +150,14 @@ class Compiler {
     std::vector<int> held_at_start;
     while (knitted < total) {
       // every repeat starts with the beds at home, so that all repeats are alike
-      racking_ = 0;
-      racking_at_ = {};
+      standing_ = {};
       program_.repeat_starts.push_back(position());
       if (knitted == margin_courses_) held_at_start = held_in_window();
       for (const CourseLine& line : source_.lines) {
         if (knitted == total) break;
         const bool at_repeat = position() == program_.repeat_starts.back();
         if (margin_wales_ > 0 && (at_repeat || line.knits())) mark_window(knitted, held_at_start);
-        for (const Pass& pass : line.passes) {
-          if (pass.knits())
-            knit(pass);
-          else
-            transfer(pass);
-        }
+        knit_line(line);
         if (line.knits()) ++knitted;
       }
     }
@@ -171,6 +165,22 @@ class Compiler {
     if (edges_ == Edges::bound_off) bind_off();
     take_carriers_out();
     warn_of_idle_notation();
+  }
+
+  // A racking holds to the end of its line; one that stands alone on a line holds until the next such line.
+  void knit_line(const CourseLine& line) {
+    racking_ = standing_.racking;
+    racking_at_ = standing_.at;
+    bool racks_alone = true;
+    for (const Pass& pass : line.passes) {
+      racks_alone = racks_alone && pass.cells.empty();
+      if (pass.knits()) {
+        knit(pass);
+      } else {
+        transfer(pass);
+      }
+    }
+    if (racks_alone) standing_ = {0, racking_, racking_at_};
   }
 
   int position() const { return static_cast<int>(program_.instructions.size()); }
@@ -503,6 +513,7 @@ class Compiler {
   int first_ = 0, last_ = 0;                 // needles of the piece with its margins: [first_, last_)
   std::vector<int> front_held_, rear_held_;  // loops on each needle, by needle - first_
   double racking_ = 0;                       // asked for by the notation
+  RackMark standing_;                        // the racking that lines start with
   SourceLocation racking_at_;
   double machine_racking_ = 0;             // of the last rack instruction
   std::vector<Direction> last_direction_;  // by yarn; none: the carrier is not in

@@ -51,9 +51,10 @@ TEST(Vermiculation, InterlockStaysOpposite) {
 }
 
 TEST(Vermiculation, RackingIsAbsoluteAndRkIsKnitoutsPlusK) {
-  EXPECT_EQ(listing(free_piece("gggg\n.t..\nR1 .T..\ngggg\n", "4 x 2")),
-            "in A; knit + f0 A; knit + f1 A; knit + f2 A; knit + f3 A; xfer f1 b1; rack 1; xfer b1 f2; "
-            "knit - f3 A; knit - f2 A; knit - f1 A; knit - f0 A; rack 0; out A");
+  EXPECT_EQ(
+      listing(free_piece("gggg\n.t..\nR1 .T..\ngggg\n", "4 x 2")),
+      "in A; knit + f0 A; knit + f1 A; knit + f2 A; knit + f3 A; xfer f1 b1; rack 1; xfer b1 f2; rack 0; "
+      "knit - f3 A; knit - f2 A; knit - f1 A; knit - f0 A; out A");
   // Rk and r-k are the same
   EXPECT_EQ(listing(free_piece("gggg\n.t..\nr-1 .T..\ngggg\n", "4 x 2")),
             listing(free_piece("gggg\n.t..\nR1 .T..\ngggg\n", "4 x 2")));

@@ -40,17 +40,9 @@ void Carriers::bring_in(const Instruction& instruction, int index) {
 
 void Carriers::take_out(const Instruction& instruction, int index, std::vector<YarnRecord>& yarns) {
   const std::vector<CarrierId>& set = known(instruction);
-  const bool by_hook = instruction.op == Op::outhook;
   const bool takes_hooked =
       std::any_of(set.begin(), set.end(), [&](CarrierId id) { return carriers_[id.position()].in_hook; });
-  if (hook_holds_exactly(set)) {
-    // Some programmes leave it to the machine to let go of the very yarns that it takes out.
-    diagnostics_.warning(instruction.at, "the yarn inserting hook holds " + names(set) + " since " +
-                                             line_of(hook_.instruction) +
-                                             " and lets go only now: write 'releasehook " +
-                                             names(hook_.holds) + "' once the yarn is knitted in");
-    empty_hook();
-  } else if (takes_hooked || (by_hook && !hook_.holds.empty())) {
+  if (takes_hooked || (instruction.op == Op::outhook && !hook_.holds.empty())) {
     diagnostics_.error(instruction.at, "the yarn inserting hook still holds " + names(hook_.holds) +
                                            " from " + line_of(hook_.instruction) + ": write 'releasehook " +
                                            names(hook_.holds) + "' before this");

@@ -47,7 +47,8 @@ struct YarnStep {
   double slot = 0;
   Direction direction = Direction::right;
   int instruction = -1;
-  Needle from;          // beside which the carrier stood just before, after transfers took it along; first step: `needle`
+  // Beside it the carrier stood just before, after transfers took it along; first step of a yarn: `needle`.
+  Needle from;
 };
 
 struct YarnRecord {
@@ -56,9 +57,11 @@ struct YarnRecord {
   int in_instruction = -1, out_instruction = -1;
 };
 
-// Two loops that racking carried past each other while they were on opposite beds: the one on the front bed
-// passed in front. `front_moved`: +1 if it moved to the right relative to the other, -1 to the left. In time
-// order.
+// Two loops whose left-right order at the end differs from that at first, because racking carried them past
+// each other while they were on opposite beds: the one on the front bed passed in front. `front_moved`: +1 if
+// it moved to the right relative to the other, -1 to the left. Passings that undid each other are left out;
+// two loops wound round each other have several entries, the fronts taking turns. `instruction`: what moved
+// or cast off one of them after the last passing, in whose order the list is.
 struct LoopCrossing {
   LoopId front, back;
   int front_moved = 0;
@@ -74,15 +77,15 @@ struct NeedleStack {
 // A change of the racking; re-stated rackings are no change.
 struct RackingChange {
   int instruction = -1;
-  double racking = 0;   // from this instruction on
+  double racking = 0;  // from this instruction on
 };
 
 struct KnittingRecord {
   std::vector<LoopRecord> loops;  // in the order in which they were formed
   std::vector<YarnRecord> yarns;
-  std::vector<LoopCrossing> crossings;  // net: passings that undid each other are left out
+  std::vector<LoopCrossing> crossings;
   std::vector<RackingChange> rackings;  // in time order; the racking is 0 before the first
-  std::vector<NeedleStack> held;  // at the end, by needle
+  std::vector<NeedleStack> held;        // at the end, by needle
   // The stack in which each loop was when it was cast off, dropped or left at the end: `stack_rank` counts
   // from the front of the fabric (+z) to its back, 0 in front; `stack_height` is the number of loops that lay
   // there.

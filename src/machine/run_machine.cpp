@@ -192,9 +192,9 @@ void Machine::form_loops(const Instruction& instruction) {
 
 void Machine::miss(const Instruction& instruction) {
   if (instruction.carriers.empty()) {
-    diagnostics_.warning(instruction.at,
-                         "a miss without a carrier moves nothing: name the carrier that passes " +
-                             to_string(instruction.needle) + " or leave it out");
+    diagnostics_.error(instruction.at,
+                       "a miss without a carrier moves nothing: name the carrier that passes " +
+                           to_string(instruction.needle) + " or leave it out");
     return;
   }
   const std::vector<CarrierId>& set = carriers_.use(instruction, record_.yarns);

@@ -7,6 +7,7 @@
 
 #include "base/parallel.hpp"
 #include "mechanics/energies/bend.hpp"
+#include "mechanics/energies/plates.hpp"
 #include "mechanics/energies/stretch.hpp"
 
 namespace loopwright {
@@ -58,6 +59,11 @@ Assembly::Assembly(const YarnModel& model) : model_(model) {}
 double Assembly::law_scale(int a, int b) const {
   const auto yarn = [&](int e) { return static_cast<std::size_t>(model_.yarn_of_segment[static_cast<std::size_t>(e)]); };
   return 0.5 * (model_.yarns[yarn(a)].diameter + model_.yarns[yarn(b)].diameter);
+}
+
+bool Assembly::in_contact(const SegmentPair& pair) const {
+  const double reach = model_.contact.outer * law_scale(pair.a, pair.b);
+  return pair.distance2 < reach * reach;
 }
 
 void Assembly::prepare(const YarnState& state) {
@@ -117,6 +123,7 @@ void Assembly::build_pattern(BlockMatrix& matrix) const {
         for (const auto j : n) visit(i, j);
     }
     for (const SegmentPair& p : pairs_) {
+      if (!in_contact(p)) continue;
       const auto na = segment_nodes(p.a), nb = segment_nodes(p.b);
       for (const auto i : na)
         for (const auto j : nb) {
@@ -140,6 +147,42 @@ void Assembly::build_pattern(BlockMatrix& matrix) const {
   matrix.block.assign(matrix.column.size(), Block{});
   matrix.border.assign(nodes, Block{});
   matrix.corner = {};
+}
+
+void Assembly::metric(BlockMatrix& matrix) const {
+  constexpr double own_motion = 1e-3;  // keeps rigid motion and the sliding of whole yarns finite
+  matrix.metric.assign(matrix.column.size(), 0);
+  const auto add_to = [&](std::int32_t i, std::int32_t j, double v) {
+    const bool held_i = model_.held[static_cast<std::size_t>(i)], held_j = model_.held[static_cast<std::size_t>(j)];
+    if (held_i || held_j) return;
+    matrix.metric[matrix.place(i, j)] += v;
+  };
+  const auto base_of = [&](std::size_t k) { return model_.base[k]; };
+  for (std::int32_t i = 0; i < model_.nodes; ++i) add_to(i, i, own_motion);
+  for (const YarnModel::Yarn& yarn : model_.yarns) {
+    const int links = yarn.periodic ? yarn.nodes : yarn.nodes - 1;
+    for (int k = 0; k < links; ++k) {
+      const auto i = base_of(static_cast<std::size_t>(yarn.first_extended + k)), j = base_of(static_cast<std::size_t>(yarn.first_extended + k + 1));
+      add_to(i, i, 1);
+      add_to(j, j, 1);
+      add_to(i, j, -1);
+      add_to(j, i, -1);
+    }
+  }
+  // Segments in contact: relative motion of their middles (weights 1/48, 23/48, 23/48, 1/48).
+  constexpr std::array<double, 4> middle{1 / 48.0, 23 / 48.0, 23 / 48.0, 1 / 48.0};
+  for (const SegmentPair& pair : pairs_) {
+    if (pair.same_yarn || !in_contact(pair)) continue;
+    const auto fa = static_cast<std::size_t>(model_.first[static_cast<std::size_t>(pair.a)]), fb = static_cast<std::size_t>(model_.first[static_cast<std::size_t>(pair.b)]);
+    for (std::size_t k = 0; k < 4; ++k)
+      for (std::size_t l = 0; l < 4; ++l) {
+        const double w = middle[k] * middle[l];
+        add_to(base_of(fa + k), base_of(fa + l), w);
+        add_to(base_of(fb + k), base_of(fb + l), w);
+        add_to(base_of(fa + k), base_of(fb + l), -w);
+        add_to(base_of(fb + l), base_of(fa + k), -w);
+      }
+  }
 }
 
 EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMatrix* matrix) {
@@ -188,7 +231,8 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
       add_measures_transposed(fk, column, sums.corner);
     };
 
-    // Stretch and bend.
+    // Stretch, bend and plates.
+    const bool plates = model_.plates.stiffness > 0;
     for (int e = 0; e < model_.segments; ++e) {
       if (!touches(e)) continue;
       const bool whole = owns_segment(e);
@@ -198,11 +242,21 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
       SegmentDofs x;
       for (std::size_t k = 0; k < 4; ++k)
         for (std::size_t d = 0; d < 3; ++d) x[3 * k + d] = extended_[f + k][static_cast<int>(d)];
-      const LocalTerm<12> stretch = Stretch{yarn.stretch_stiffness, yarn.rest_length}.evaluate(x);
+      LocalTerm<12> stretch = Stretch{yarn.stretch_stiffness, yarn.rest_length}.evaluate(x);
       const LocalTerm<12> bend = Bend{yarn.bend_stiffness, yarn.rest_length}.evaluate(x);
       if (whole) {
         sums.energy.stretch += stretch.energy;
         sums.energy.bend += bend.energy;
+      }
+      if (plates) {
+        const Plates element{model_.plates.stiffness, model_.plates.low, model_.plates.high, yarn.rest_length, model_.samples};
+        const LocalTerm<12> pushed = element.evaluate(x, model_.weights);
+        if (whole) sums.energy.plates += pushed.energy;
+        if (pushed.energy > 0)
+          for (std::size_t k = 0; k < 12; ++k) {
+            stretch.gradient[k] += pushed.gradient[k];
+            for (std::size_t l = 0; l < 12; ++l) stretch.hessian[k][l] += pushed.hessian[k][l];
+          }
       }
       if (gradient)
         for (std::size_t k = 0; k < 4; ++k)
@@ -222,6 +276,7 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
     // Contact.
     ContactPairOutput out;
     for (const SegmentPair& pair : pairs_) {
+      if (matrix && !in_contact(pair)) continue;
       const bool touches_a = touches(pair.a), touches_b = touches(pair.b);
       if (!touches_a && !touches_b) continue;
       const bool whole = owns_segment(pair.a);
@@ -297,6 +352,7 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
     energy.stretch += p.energy.stretch;
     energy.bend += p.energy.bend;
     energy.contact += p.energy.contact;
+    energy.plates += p.energy.plates;
     for (std::size_t k = 0; k < 3; ++k)
       if (gradient) gradient->g[k] += p.gradient[k];
     if (matrix) add(matrix->corner, p.corner);

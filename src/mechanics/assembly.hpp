@@ -13,8 +13,8 @@
 namespace loopwright {
 
 struct EnergyParts {
-  double stretch = 0, bend = 0, contact = 0;
-  double total() const { return stretch + bend + contact; }
+  double stretch = 0, bend = 0, contact = 0, plates = 0;
+  double total() const { return stretch + bend + contact + plates; }
 };
 
 class Assembly {
@@ -30,8 +30,14 @@ class Assembly {
   EnergyParts energy(const YarnState& state);
   // Gradient with held points' u-part set to zero and measures that are not free set to zero.
   EnergyParts gradient(const YarnState& state, Unknowns& gradient);
-  // Gradient and full Hessian; rows and columns of what is held are those of the identity.
+  // Gradient and full Hessian; rows and columns of what is held are those of the identity. Only for the state that
+  // update_pairs() was last given: the pattern holds the pairs that are in contact there.
   EnergyParts hessian(const YarnState& state, Unknowns& gradient, BlockMatrix& hessian);
+
+  // The metric of steps, on the Hessian's pattern: squared relative motion of neighbouring control points along the yarn and of
+  // segments in contact, plus a little of the motion itself. What makes a step untrue is turning of yarn and sliding of
+  // contacts, so rigid and long-wave motion is all but free and step counts need not grow with the piece.
+  void metric(BlockMatrix& hessian) const;
 
   // Places of contact samples in the last state given.
   const SamplePlaces& places() const { return places_; }
@@ -44,6 +50,7 @@ class Assembly {
   EnergyParts terms(const YarnState& state, Unknowns* gradient, BlockMatrix* hessian);
   void prepare(const YarnState& state);
   void build_pattern(BlockMatrix& hessian) const;
+  bool in_contact(const SegmentPair& pair) const;
   double law_scale(int segment_a, int segment_b) const;
 
   const YarnModel& model_;

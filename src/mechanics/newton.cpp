@@ -1,6 +1,7 @@
 #include "mechanics/newton.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -20,18 +21,6 @@ double largest_measure_force(const Unknowns& g) {
   return std::max({std::abs(g.g[0]), std::abs(g.g[1]), std::abs(g.g[2])});
 }
 
-// What a unit change of width, height or skew means in squared control-point motion (sum of M'M).
-Measures measure_weights(const Assembly& assembly, const YarnState& state) {
-  Measures w{};
-  for (const auto& f : assembly.fractions(state)) {
-    w[0] += f[0] * f[0];
-    w[1] += f[1] * f[1];
-    w[2] += f[1] * f[1];
-  }
-  for (double& v : w) v = std::max(v, 1.0);
-  return w;
-}
-
 }  // namespace
 
 NewtonResult newton(const YarnModel& model, YarnState& state, const NewtonOptions& options, double first_shift) {
@@ -45,22 +34,26 @@ NewtonResult newton(const YarnModel& model, YarnState& state, const NewtonOption
   const bool trace = std::getenv("LOOPWRIGHT_TRACE") != nullptr;
 
   for (result.iterations = 0;; ++result.iterations) {
+    const auto t0 = std::chrono::steady_clock::now();
+    const auto since = [&](auto a) { return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - a).count(); };
     const double range = outer + loose;
     assembly.update_pairs(state, range);
     result.energy = assembly.hessian(state, gradient, hessian);
     result.residual = largest_force(gradient);
+    const double t_assembly = since(t0);
     result.measure_residual = largest_measure_force(gradient);
     result.converged = result.residual < options.tolerance && result.measure_residual < options.tolerance;
     if (options.on_iteration && !options.on_iteration(result.iterations, result.residual)) result.stopped = true;
     if (result.converged || result.stopped || result.iterations >= options.most_iterations) break;
 
     // Factor H + shift, raising the shift until it is positive definite.
-    const Measures weights = measure_weights(assembly, state);
-    const double tried_shift = shift;
+    assembly.metric(hessian);
+    hessian.measure_metric = {1, 1, 1};
+    const double t_metric = since(t0);
     int raised = 0;
     while (true) {
       ++result.factorisations;
-      if (cholesky.factor(hessian, shift, weights)) break;
+      if (cholesky.factor(hessian, shift)) break;
       shift = std::max(4 * shift, 1e-4);
       if (++raised > 60) {
         result.shift = shift;
@@ -72,6 +65,7 @@ NewtonResult newton(const YarnModel& model, YarnState& state, const NewtonOption
     for (Vec3& v : step.u) v = -v;
     for (double& v : step.g) v = -v;
 
+    const double t_factor = since(t0);
     const double slope = dot(gradient, step);
     const YarnState target = assembly.moved(state, step, 1);
     const SafeStep safe = safe_step(model, assembly, state, target, range, outer, 0.5);
@@ -91,10 +85,10 @@ NewtonResult newton(const YarnModel& model, YarnState& state, const NewtonOption
       scale *= 0.5;
     }
     if (trace)
-      std::fprintf(stderr, "  it %3d E %.9g (b %.6g c %.4g s %.3g) res %.3e mres %.2e shift %.2e raised %d scale %.3g cuts %d ratio %.3g loose %.3g W %.4f H %.4f pairs %zu\n",
+      std::fprintf(stderr, "  it %3d E %.9g (b %.6g c %.4g s %.3g) res %.3e mres %.2e shift %.2e raised %d scale %.3g cuts %d ratio %.3g loose %.3g W %.4f H %.4f pairs %zu  ms %.0f %.0f %.0f %.0f nnz %.3g\n",
                    result.iterations, energy, result.energy.bend, result.energy.contact, result.energy.stretch, result.residual,
                    result.measure_residual, shift, raised, scale, cuts, safe.pair_ratio, safe.loose_motion, state.width, state.height,
-                   assembly.pairs().size());
+                   assembly.pairs().size(), t_assembly, t_metric, t_factor, since(t0), cholesky.factor_entries());
     if (scale == 0) {
       if (shift > 1e12) break;
       shift = std::max(16 * shift, 1e-3);
@@ -111,7 +105,6 @@ NewtonResult newton(const YarnModel& model, YarnState& state, const NewtonOption
     } else if (raised == 0 && scale > 0.4) {
       shift *= 0.5;
     }
-    (void)tried_shift;
     // A step held back by the pair list's reach alone: look farther next time.
     if (safe.loose_motion * safe.scale > 0.4 * (range - outer) && safe.pair_ratio * safe.scale < 0.4)
       loose = std::min(2 * loose, 2.4);

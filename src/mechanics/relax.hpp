@@ -21,6 +21,9 @@ struct RelaxOptions {
   double tolerance = 2e-4;   // largest force on a control point that counts as rest, B/d^2
   int most_iterations = 600;
   bool grow_in = true;       // start with a thin yarn; false: the fabric is a saved state at full radius
+  // Finite pieces lie between two plates, this far (in d) beyond the first geometry's centrelines: plain cloth curls
+  // otherwise. Negative: no plates. Periodic cells need none.
+  double plate_room = 0.25;
   // Called after every iteration; returning false stops the run (what was reached is returned, not converged).
   std::function<bool(const RelaxProgress&)> on_progress;
 };

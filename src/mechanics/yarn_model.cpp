@@ -42,9 +42,14 @@ YarnModel build_yarn_model(const Fabric& fabric, const ModelOptions& options) {
   require(!fabric.periodic || (fabric.width > 0 && fabric.height > 0), "a periodic cell needs a positive width and height");
   require(std::isfinite(options.sample_spacing) && options.sample_spacing > 0, "the contact sample spacing must be positive");
 
+  require(std::isfinite(options.plates.stiffness) && options.plates.stiffness >= 0 &&
+              (options.plates.stiffness == 0 || options.plates.low < options.plates.high),
+          "plates need a stiffness of 0 or more, and the low one below the high one");
+
   YarnModel model;
   model.periodic = fabric.periodic;
   model.free = options.free;
+  model.plates = options.plates;
   model.contact = options.material.contact;
   double longest_segment = 0;
   for (const FabricYarn& yarn : fabric.yarns) {

@@ -16,6 +16,11 @@ struct FreeMeasures {
   bool width = true, height = true, skew = false;
 };
 
+// Two plates that keep a piece flat (energies/plates.hpp); stiffness 0: none. Places of centrelines, in d.
+struct FlatPlates {
+  double stiffness = 0, low = 0, high = 0;
+};
+
 // Yarn data in the model's units: lengths in d, stiffness B = 1.
 struct YarnMaterial {
   double stretch_stiffness = 3000;  // EA d^2 / B
@@ -51,6 +56,7 @@ struct YarnModel {
   double excluded = 1.9634954084936207;            // same-yarn pairs closer than this (1.25 pi/2 d) along the yarn do not touch
   bool periodic = false;
   FreeMeasures free;
+  FlatPlates plates;
 };
 
 struct YarnState {
@@ -64,6 +70,7 @@ struct ModelOptions {
   YarnMaterial material;
   double sample_spacing = 0.18;  // wanted distance of contact samples along a yarn, in d
   FreeMeasures free;
+  FlatPlates plates;
 };
 
 // Throws std::invalid_argument on non-finite input or data out of range, saying which and what is allowed.

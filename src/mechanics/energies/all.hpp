@@ -4,8 +4,9 @@
 
 #include "mechanics/energies/bend.hpp"
 #include "mechanics/energies/contact.hpp"
+#include "mechanics/energies/plates.hpp"
 #include "mechanics/energies/stretch.hpp"
 
 namespace loopwright {
-using AllEnergies = std::tuple<Stretch, Bend, Contact>;
+using AllEnergies = std::tuple<Stretch, Bend, Contact, Plates>;
 }

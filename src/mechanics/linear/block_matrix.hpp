@@ -21,6 +21,10 @@ struct BlockMatrix {
   std::vector<Block> block;
   std::vector<Block> border;             // [rows] C: columns width, height, skew
   Block corner{};                        // G
+  // A second matrix on the same pattern, each entry a multiple of the 3 x 3 identity: the metric in which steps are
+  // measured (Assembly::metric); measure_metric is its diagonal for the three measures.
+  std::vector<double> metric;
+  Measures measure_metric{};
 
   int rows() const { return static_cast<int>(row_start.size()) - 1; }
   // Place of block (row, col); the pattern must have it.

@@ -47,7 +47,7 @@ void lower_values(const BlockMatrix& m, double shift, LowerColumns& out) {
         if (j < i) continue;
         const Block& b = m.block[k];
         for (std::size_t c = j == i ? r : 0; c < 3; ++c)
-          out.value[at++] = b[3 * r + c] + (j == i && c == r ? shift : 0);
+          out.value[at++] = b[3 * r + c] + (c == r ? shift * m.metric[k] : 0);
       }
 }
 
@@ -93,6 +93,8 @@ struct Cholesky::Factor {
 #ifdef LOOPWRIGHT_HAS_CHOLMOD
   cholmod_common common{};
   cholmod_factor* factor = nullptr;
+  std::vector<int> order;
+  double best_entries = 0;
   Factor() {
     cholmod_start(&common);
     common.print = 0;
@@ -123,9 +125,9 @@ struct Cholesky::Factor {
     a.sorted = a.packed = 1;
     return a;
   }
-  // Orders control points (not coordinates): three times fewer rows, nine times fewer entries to look at.
-  void analyse(const BlockMatrix& m) {
-    cholmod_free_factor(&factor, &common);
+  // Orders control points (not coordinates): three times fewer rows, nine times fewer entries to look at. Contacts come
+  // and go between neighbours, which hardly spoils an order, so it is kept until the factor has grown by a quarter.
+  void order_nodes(const BlockMatrix& m) {
     std::vector<int> start{0}, row;
     for (int i = 0; i < m.rows(); ++i) {
       for (auto k = static_cast<std::size_t>(m.row_start[static_cast<std::size_t>(i)]);
@@ -143,18 +145,28 @@ struct Cholesky::Factor {
     graph.xtype = CHOLMOD_PATTERN;
     graph.dtype = CHOLMOD_DOUBLE;
     graph.sorted = graph.packed = 1;
-    std::vector<int> node_order(static_cast<std::size_t>(m.rows())), order;
-    if (m.rows() > 4000 && cholmod_metis(&graph, nullptr, 0, 1, node_order.data(), &common)) {
-    } else if (!cholmod_amd(&graph, nullptr, 0, node_order.data(), &common)) {
+    std::vector<int> node_order(static_cast<std::size_t>(m.rows()));
+    if (!(m.rows() > 2000 && cholmod_metis(&graph, nullptr, 0, 1, node_order.data(), &common)) &&
+        !cholmod_amd(&graph, nullptr, 0, node_order.data(), &common))
       throw std::runtime_error("ordering the stiffness matrix failed (out of memory?)");
-    }
+    order.clear();
     order.reserve(3 * node_order.size());
     for (const int i : node_order)
       for (int d = 0; d < 3; ++d) order.push_back(3 * i + d);
-    common.method[0].ordering = CHOLMOD_GIVEN;
-    cholmod_sparse a = view();
-    factor = cholmod_analyze_p(&a, order.data(), nullptr, 0, &common);
-    if (!factor) throw std::runtime_error("analysing the stiffness matrix failed (out of memory?)");
+    best_entries = 0;
+  }
+  void analyse(const BlockMatrix& m) {
+    for (int attempt = 0; attempt < 2; ++attempt) {
+      const bool fresh = order.size() != static_cast<std::size_t>(unknowns) || attempt == 1;
+      if (fresh) order_nodes(m);
+      cholmod_free_factor(&factor, &common);
+      common.method[0].ordering = CHOLMOD_GIVEN;
+      cholmod_sparse a = view();
+      factor = cholmod_analyze_p(&a, order.data(), nullptr, 0, &common);
+      if (!factor) throw std::runtime_error("analysing the stiffness matrix failed (out of memory?)");
+      if (best_entries == 0) best_entries = common.lnz;
+      if (fresh || common.lnz < 1.25 * best_entries) return;
+    }
   }
   bool numeric() {
     cholmod_sparse a = view();
@@ -197,7 +209,7 @@ Cholesky::~Cholesky() = default;
 
 double Cholesky::factor_entries() const { return factor_->entries(); }
 
-bool Cholesky::factor(const BlockMatrix& m, double shift, const Measures& measure_weight) {
+bool Cholesky::factor(const BlockMatrix& m, double shift) {
   Factor& f = *factor_;
   const bool known = f.row_start == m.row_start && f.column == m.column;
   f.unknowns = 3 * m.rows();
@@ -214,7 +226,7 @@ bool Cholesky::factor(const BlockMatrix& m, double shift, const Measures& measur
   Block s = m.corner;
   std::vector<double> column(static_cast<std::size_t>(f.unknowns));
   for (std::size_t k = 0; k < 3; ++k) {
-    s[4 * k] += shift * measure_weight[k];
+    s[4 * k] += shift * m.measure_metric[k];
     bool empty = true;
     for (std::size_t i = 0; i < f.border.size(); ++i)
       for (std::size_t d = 0; d < 3; ++d) {

@@ -1,6 +1,6 @@
-// Sparse Cholesky factorisation of a bordered block matrix plus a shift, behind a narrow interface:
-//   [ A + shift I   C          ]
-//   [ C'            G + shift W ]     W: weights of the measures
+// Sparse Cholesky factorisation of a bordered block matrix plus a multiple of its metric D, behind a narrow interface:
+//   [ A + shift D   C            ]
+//   [ C'            G + shift Dm ]
 // CHOLMOD (supernodal) where the build found it, otherwise Eigen's simplicial factorisation.
 #pragma once
 #include <memory>
@@ -17,7 +17,7 @@ class Cholesky {
   Cholesky& operator=(const Cholesky&) = delete;
 
   // False if the matrix is not positive definite. The elimination order is found anew when the pattern changes.
-  bool factor(const BlockMatrix& matrix, double shift, const Measures& measure_weight);
+  bool factor(const BlockMatrix& matrix, double shift);
   // x = M^-1 b for the matrix of the last successful factor().
   void solve(const Unknowns& b, Unknowns& x);
   // Entries of the factor, for reports.

@@ -26,9 +26,12 @@ bool read_bytes(const std::filesystem::path& file, std::string& bytes, Diagnosti
   if (failure) return refuse("the file cannot be looked at: " + failure.message());
   if (std::filesystem::is_directory(status))
     return refuse("this is a folder; name a .verm, .k or .knitout file");
+  const std::uintmax_t size = std::filesystem::file_size(file, failure);
+  if (!failure && size > largest_file_bytes)
+    return refuse("the file is larger than 512 MiB; split the programme");
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"), &std::fclose);
   if (!stream) return refuse(std::string("the file cannot be opened: ") + std::strerror(errno));
-  // read to the end rather than trust the size: pipes have none
+  // read to the end rather than trust the size: a pipe has none, and a file may grow
   constexpr std::size_t block = std::size_t{1} << 20;
   while (true) {
     const std::size_t before = bytes.size();

@@ -109,5 +109,194 @@ TEST(Vermiculation, ErrorsPointAtTheCharacter) {
   EXPECT_THAT(errors_of("gt\n"), HasSubstr("2:2: error: transfers and stitches in one pass"));
 }
 
+TEST(Vermiculation, ErrorsOfTheGrammar) {
+  EXPECT_THAT(errors_of("g\xc3\xa9g\n"), HasSubstr("2:2: error: unknown letter '\\xc3\\xa9'"));
+  EXPECT_THAT(errors_of("e/g\n"), HasSubstr("2:1: error: 'e' belongs to the other bed; left of '/'"));
+  EXPECT_THAT(errors_of("g/v\n"), HasSubstr("2:3: error: 'v' belongs to the other bed; right of '/'"));
+  EXPECT_THAT(errors_of("g/\n"), HasSubstr("2:1: error: a pass on both beds names needles on both sides"));
+  EXPECT_THAT(errors_of("g/e/g\n"), HasSubstr("2:4: error: a pass has two rows"));
+  EXPECT_THAT(errors_of("g &\n"), HasSubstr("2:4: error: a pass of zero wales"));
+  EXPECT_THAT(errors_of("(ge\n"), HasSubstr("2:1: error: this '(' is never closed"));
+  EXPECT_THAT(errors_of("ge)\n"), HasSubstr("2:3: error: unknown letter ')'"));
+  EXPECT_THAT(errors_of("g*0\n"), HasSubstr("2:3: error: repeated zero times"));
+  EXPECT_THAT(errors_of("g*\n"), HasSubstr("2:3: error: expected how many times"));
+  EXPECT_THAT(errors_of("g*99999999999\n"), HasSubstr("2:3: error: at most 10000 repeats"));
+  EXPECT_THAT(errors_of("(g*1000)*1000\n"), HasSubstr("2:9: error: this makes more than 10000 wales"));
+  EXPECT_THAT(errors_of("g R g\n"), HasSubstr("2:4: error: expected a number of needles after 'R'"));
+  EXPECT_THAT(errors_of("r9 g\n"), HasSubstr("2:2: error: racking is counted in needles, from -8 to 8"));
+  EXPECT_THAT(errors_of("R0.3 g\n"), HasSubstr("2:2: error: racking is counted in needles"));
+  EXPECT_THAT(errors_of("g / e R1 e\n"), HasSubstr("2:7: error: racking among the rear needles"));
+  EXPECT_THAT(errors_of("g\nR0.5 t\n"), HasSubstr("3:6: error: transfers need needles that face each other"));
+  EXPECT_THAT(errors_of("B: g\n"), HasSubstr("2:1: error: no yarn is called 'B'"));
+  EXPECT_THAT(errors_of("A+A: g\n"), HasSubstr("2:3: error: yarn 'A' is named twice"));
+  EXPECT_THAT(errors_of("A+: g\n"), HasSubstr("2:3: error: expected the name of a yarn"));
+  EXPECT_THAT(errors_of("A: t\n"), HasSubstr("2:1: error: a pass without stitches or tucks carries no yarn"));
+  EXPECT_THAT(errors_of("[\ng\n"), HasSubstr("2:1: error: this '[' is never closed"));
+  EXPECT_THAT(errors_of("g\n]*2\n"), HasSubstr("3:1: error: this ']' has no '['"));
+  EXPECT_THAT(errors_of("[\ng\n] 2\n"), HasSubstr("4:3: error: expected how many times"));
+  EXPECT_THAT(errors_of(";;Gating: opposite\ng/e\n"),
+              HasSubstr("3:3: error: needle b-3 faces f-3 and both take yarn"));
+  EXPECT_THAT(errors_of("; nothing\n"), HasSubstr("error: there is no course"));
+  EXPECT_THAT(errors_of("t\n"), HasSubstr("error: there is no course"));
+  EXPECT_THAT(errors_of("g*9973\ng*9967\n"), HasSubstr("3:1: error: the widths of the passes up to here"));
+  Diagnostics diagnostics("x.verm");
+  read_vermiculation("ge\n", diagnostics);
+  EXPECT_THAT(said(diagnostics),
+              HasSubstr("x.verm:1:1: error: the first line is not ';!vermiculation-1' but 'ge'"));
+}
+
+TEST(Vermiculation, ErrorsOfHeaders) {
+  EXPECT_THAT(errors_of(";;Edges: hemmed\ng\n"),
+              HasSubstr("2:10: error: edges are held, bound-off, free or periodic"));
+  EXPECT_THAT(errors_of(";;Size: 0 x 3\ng\n"), HasSubstr("2:9: error: a size is at least 1, not '0'"));
+  EXPECT_THAT(errors_of(";;Size: -4 x 3\ng\n"), HasSubstr("2:9: error: a size is at least 1, not '-4'"));
+  EXPECT_THAT(errors_of(";;Size: 4\ng\n"), HasSubstr("2:10: error: expected 'x'"));
+  EXPECT_THAT(errors_of(";;Size: 4 wales x 5 wales\ng\n"),
+              HasSubstr("2:9: error: a size names wales and courses once"));
+  EXPECT_THAT(errors_of(";;Size: 4 x 5 cm\ng\n"), HasSubstr("2:15: error: expected the end of the size"));
+  EXPECT_THAT(errors_of(";;Set: 1.5\ng\n"), HasSubstr("2:8: error: Set is a share from 0"));
+  EXPECT_THAT(errors_of(";;Loop-Length: inf mm\ng\n"), HasSubstr("2:16: error: expected a number"));
+  EXPECT_THAT(errors_of(";;Loop-Length: 1e400 mm\ng\n"), HasSubstr("2:16: error: expected a number"));
+  EXPECT_THAT(errors_of(";;Loop-Length: 6 furlong\ng\n"),
+              HasSubstr("2:16: error: unknown unit 'furlong'; write mm"));
+  EXPECT_THAT(errors_of(";;Gauge: 0\ng\n"), HasSubstr("2:10: error: Gauge must be greater than 0"));
+  EXPECT_THAT(errors_of(";;Loop-Length:\ng\n"), HasSubstr("2:15: error: header 'Loop-Length' has no value"));
+  EXPECT_THAT(errors_of(";;Yarn-A: wool 2/28 Nm diameter=0 mm\ng\n"),
+              HasSubstr("2:33: error: diameter must be greater"));
+  EXPECT_THAT(errors_of(";;Yarn-A: wool fluff=3\ng\n"), HasSubstr("2:16: error: unknown yarn key 'fluff'"));
+  EXPECT_THAT(errors_of(";;Yarn-A: wool colour=red\ng\n"), HasSubstr("2:23: error: expected a colour"));
+  EXPECT_THAT(errors_of(";;Yarn-A: wool\n;;Yarn-B: wool\n;;Carriers: 3\ng\n"),
+              HasSubstr("4:13: error: there are 2 yarns"));
+  EXPECT_THAT(errors_of(";;Gaugw: 7\ng\n"), HasSubstr("2:3: warning: unknown header 'Gaugw'"));
+  EXPECT_THAT(errors_of("g\n;;Gauge: 7\n"), HasSubstr("3:3: warning: header 'Gauge' after the first course"));
+  EXPECT_THAT(errors_of(";;Yarn-A: wool\n;;Yarn-B: wool\ng\n"),
+              HasSubstr("3:8: warning: yarn B is never knitted"));
+}
+
+TEST(Vermiculation, HeadersFillTheSettings) {
+  Diagnostics diagnostics("all.verm");
+  const Program program = read_vermiculation(
+      ";!vermiculation-1\n;;Name: everything ; but this\n;;Gauge: E12\n;;Bed-Gap: 0.4 cm\n;;Loop-Length: 6.2 "
+      "mm\n"
+      ";;Tuck-Length: 4 mm\n;;Float-Slack: 5 %\n;;Bed-Change: 1.5 mm\n;;Set: 0.25\n;;Size: 4 courses x 6 "
+      "wales\n"
+      ";;Edges: bound-off\n;;X-Own: anything\ng\n",
+      diagnostics);
+  EXPECT_EQ(said(diagnostics), "");
+  const FabricSettings& settings = program.settings;
+  EXPECT_EQ(settings.name, "everything");
+  EXPECT_EQ(settings.gauge_npi, 12);
+  EXPECT_EQ(settings.bed_gap_mm, 4);
+  EXPECT_EQ(settings.loop_length_mm, 6.2);
+  EXPECT_EQ(settings.tuck_length_mm, 4);
+  EXPECT_DOUBLE_EQ(settings.float_slack.value(), 0.05);
+  EXPECT_EQ(settings.bed_change_mm, 1.5);
+  EXPECT_EQ(settings.set, 0.25);
+  EXPECT_EQ(settings.size_wales, 6);
+  EXPECT_EQ(settings.size_courses, 4);
+  EXPECT_EQ(settings.edges, Edges::bound_off);
+}
+
+TEST(Vermiculation, RackingInsideACourseHappensWhereTheCarriageIs) {
+  EXPECT_EQ(listing(free_piece("g. R1 .g\n", "4 x 2")),
+            "in A; knit + f0 A; miss + f1 A; rack 1; miss + f2 A; knit + f3 A; "
+            "rack 0; knit - f3 A; miss - f2 A; rack 1; miss - f1 A; knit - f0 A; rack 0; out A");
+}
+
+TEST(Vermiculation, RackingThatStandsAloneHoldsToTheEndOfTheRepeat) {
+  const auto racks = [](const std::string& body) {
+    std::string values;
+    for (const Instruction& each : free_piece(body, "1 x 4").instructions) {
+      if (each.op == Op::rack)
+        values += std::to_string(static_cast<int>(each.value)) + " at " + std::to_string(each.at.line) + "; ";
+    }
+    return values;
+  };
+  // the head of free_piece takes three lines
+  EXPECT_EQ(racks("g\nR2\ng\n"), "2 at 5; 0 at 4; 2 at 5; 0 at 6; ");
+  EXPECT_EQ(racks("R2 g\ng\n"), "2 at 4; 0 at 5; 2 at 4; 0 at 5; ");
+}
+
+TEST(Vermiculation, TheSlotOrderFollowsTheRacking) {
+  // at racking 1.5 rear needle 0 lies between front needles 1 and 2
+  EXPECT_EQ(listing(free_piece("R1 g/e\n", "3 x 1")),
+            "in A; rack 1.5; knit + f0 A; knit + f1 A; knit + b0 A; knit + f2 A; knit + b1 A; knit + b2 A; "
+            "rack 0; out A");
+}
+
+TEST(Vermiculation, EachFeederTurnsByItself) {
+  EXPECT_EQ(listing(free_piece("A: g\nB: g\nA: g\n", "1 x 4", ";;Yarn-A:\n;;Yarn-B:\n")),
+            "in A; knit + f0 A; in B; knit + f0 B; knit - f0 A; knit + f0 A; out A; out B");
+}
+
+TEST(Vermiculation, GroupsAndBracketsAreWrittenOut) {
+  EXPECT_EQ(listing(free_piece("((g)*2 e)*2\n")), listing(free_piece("ggegge\n")));
+  EXPECT_EQ(listing(free_piece("[\ng\n[\ne\n]*2\n]*2\n")), listing(free_piece("g\ne\ne\ng\ne\ne\n")));
+}
+
+TEST(Vermiculation, MissedAndInactiveNeedles) {
+  EXPECT_EQ(listing(free_piece("g.-g\n")), "in A; knit + f0 A; miss + f1 A; knit + f3 A; out A");
+  // a missed wale is passed on the bed that holds its loops
+  EXPECT_THAT(listing(free_piece("ge\ng.\n")), HasSubstr("miss - b1 A; knit - f0 A"));
+}
+
+TEST(Vermiculation, TransfersThatNeverDoAnythingAreTold) {
+  EXPECT_THAT(errors_of("gg\n.T\n"), HasSubstr("3:2: warning: there is never a loop to transfer here"));
+  EXPECT_EQ(errors_of("gg\n.t\n"), "");
+}
+
+TEST(Vermiculation, BoundOffEndsWithOneLoop) {
+  const Program program = [] {
+    Diagnostics diagnostics("bound_off.verm");
+    return read_vermiculation(";!vermiculation-1\n;;Edges: bound-off\n;;Size: 3 x 1\nge\n", diagnostics);
+  }();
+  EXPECT_EQ(listing(program),
+            "in A; knit + f0 A; knit + b1 A; knit + f2 A; xfer b1 f1; "
+            "xfer f2 b2; rack -1; xfer b2 f1; rack 0; knit - f1 A; "
+            "xfer f1 b1; rack -1; xfer b1 f0; rack 0; knit - f0 A; out A");
+}
+
+TEST(Vermiculation, PeriodicWantsWholeRepeatsThatClose) {
+  Diagnostics diagnostics("p.verm");
+  FabricOptions options;
+  options.edges = Edges::periodic;
+  const Program program =
+      read_vermiculation(";!vermiculation-1\n;;Size: 3 x 3\nge\neg\n", diagnostics, options);
+  EXPECT_THAT(
+      said(diagnostics),
+      HasSubstr("warning: a periodic cell is made of whole repeats; the size becomes 4 wales x 4 courses"));
+  EXPECT_EQ(program.window.needles, 4);
+  EXPECT_EQ(program.settings.edges, Edges::periodic);
+  Diagnostics open("open.verm");
+  read_vermiculation(";!vermiculation-1\ng/.\n./n\n", open, options);
+  EXPECT_THAT(
+      said(open),
+      HasSubstr("does not close to a periodic cell: needle b0 holds 2 loops where the repeat starts and 3"));
+}
+
+TEST(Vermiculation, WindowOfAPieceThatIsNoMultipleOfItsRepeat) {
+  Diagnostics diagnostics("w.verm");
+  const Program program = read_vermiculation(";!vermiculation-1\n;;Size: 5 x 3\ng\ne\n", diagnostics);
+  ASSERT_TRUE(diagnostics.ok());
+  int knits = 0;
+  for (int i = 0; i < program.window.instructions; ++i) {
+    const Instruction& each =
+        program.instructions[static_cast<std::size_t>(program.window.first_instruction + i)];
+    if (each.op == Op::knit && each.needle.index >= 0 && each.needle.index < program.window.needles) ++knits;
+  }
+  EXPECT_EQ(knits, 15);
+}
+
+TEST(Vermiculation, TooLargeAPieceIsAnError) {
+  Diagnostics diagnostics("large.verm");
+  FabricOptions options;
+  options.most_instructions = 1000;
+  const Program program =
+      read_vermiculation(";!vermiculation-1\n;;Size: 100 x 100\ng\n", diagnostics, options);
+  EXPECT_THAT(said(diagnostics),
+              HasSubstr("the piece takes more than 1000 instructions; give a smaller ;;Size"));
+  EXPECT_TRUE(program.instructions.empty());
+}
+
 }  // namespace
 }  // namespace loopwright

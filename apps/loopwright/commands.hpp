@@ -1,0 +1,54 @@
+// The subcommands: what each is asked for, and one function each in a file of its name. A command writes its
+// results, says what went wrong on standard error and returns the exit status: 0, 1 after an error, 130 after
+// Ctrl-C.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline.hpp"
+
+namespace loopwright {
+
+inline constexpr int exit_good = 0, exit_error = 1, exit_interrupted = 130;
+
+// Files named in a request: empty means not wanted; for JSON "-" is standard output.
+struct CheckCommand {
+  std::vector<std::string> files;
+  std::string json;
+};
+int run(const CheckCommand& command);
+
+struct BuildCommand {
+  std::string file, out, json;
+  PieceRequest piece;
+};
+int run(const BuildCommand& command);
+
+struct PictureRequest {
+  std::string view = "front";
+  std::string size = "1600x1200";  // pixels
+};
+
+struct RelaxCommand {
+  std::string file, out, json, render;
+  PieceRequest piece;
+  PictureRequest picture;
+  int threads = 0;  // 0: all
+  std::optional<int> most_iterations;
+};
+int run(const RelaxCommand& command);
+
+struct RenderCommand {
+  std::string file, out;
+  PieceRequest piece;
+  PictureRequest picture;
+};
+int run(const RenderCommand& command);
+
+struct MeasureCommand {
+  std::string file, json;
+};
+int run(const MeasureCommand& command);
+
+}  // namespace loopwright

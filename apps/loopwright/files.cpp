@@ -1,0 +1,105 @@
+#include "files.hpp"
+
+#include <charconv>
+#include <filesystem>
+#include <iostream>
+#include <sstream>
+#include <stdexcept>
+#include <tuple>
+
+#include "outputs/atomic_file.hpp"
+#include "outputs/state.hpp"
+#include "outputs/write_fabric.hpp"
+
+namespace loopwright {
+namespace {
+
+std::optional<int> parsed_pixels(std::string_view text) {
+  int value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+}  // namespace
+
+bool names_a_state(const std::string& file) {
+  try {
+    return fabric_format(file) == FabricFormat::state;
+  } catch (const std::invalid_argument&) {
+    return false;
+  }
+}
+
+std::optional<Piece> read_piece(const std::string& file, const PieceRequest& request) {
+  if (names_a_state(file)) {
+    if (request.periodic || request.window)
+      throw std::invalid_argument(file +
+                                  ": a saved state is one piece; take a window or cell of the notation");
+    Piece piece{read_state(file), {}};
+    piece.options = relax_options(piece.state);
+    return piece;
+  }
+  Diagnostics diagnostics(file);
+  const Knitting knitting = knit(file, request, diagnostics);
+  std::optional<Piece> piece;
+  if (diagnostics.ok()) {
+    try {
+      const Fabric fabric = first_geometry(knitting, request);
+      const RelaxOptions options = relax_options(fabric, knitting.program);
+      piece = Piece{saved_state(fabric, options, 0), options};
+    } catch (const std::invalid_argument& fault) {
+      diagnostics.error({}, fault.what());
+    }
+  }
+  std::cerr << diagnostics;
+  return piece;
+}
+
+void require_writable(const std::string& file) {
+  // made and taken away again: nothing is left
+  if (!file.empty() && file != "-") const AtomicFile probe{std::filesystem::path(file)};
+}
+
+RenderOptions render_options(const PictureRequest& request, const std::string& png) {
+  if (!png.ends_with(".png") && !png.ends_with(".PNG"))
+    throw std::invalid_argument("a picture is a PNG file: give '" + png + "' the suffix .png");
+  RenderOptions options;
+  options.view = view_named(request.view).value_or(View::front);
+  const std::size_t cross = request.size.find('x');
+  std::optional<int> width, height;
+  if (cross != std::string::npos) {
+    width = parsed_pixels(std::string_view(request.size).substr(0, cross));
+    height = parsed_pixels(std::string_view(request.size).substr(cross + 1));
+  }
+  if (!width || !height || *width < 16 || *height < 16 || *width > 16384 || *height > 16384)
+    throw std::invalid_argument("a picture's size is WIDTHxHEIGHT, each from 16 to 16384 pixels, not '" +
+                                request.size + "'");
+  std::tie(options.width, options.height) = std::pair(*width, *height);
+  return options;
+}
+
+std::ostream& people(const std::string& json) { return json == "-" ? std::cerr : std::cout; }
+
+std::string summary(const Assessment& assessment) {
+  const Measurements& m = assessment.measured;
+  std::ostringstream line;
+  line.precision(3);
+  line << m.loops << " loops, " << m.width_mm << " x " << m.height_mm << " mm, " << m.wales_per_cm
+       << " wales and " << m.courses_per_cm << " courses per cm, loop length " << m.loop_length_mm
+       << " mm, Kc " << m.Kc << ", Kw " << m.Kw;
+  if (m.areal_density_g_m2) line << ", " << *m.areal_density_g_m2 << " g/m^2";
+  line << ", " << assessment.interlacings.intact << " of " << assessment.interlacings.expected
+       << " interlacings intact";
+  return line.str();
+}
+
+bool say_if_broken(const std::string& file, const Assessment& assessment, int pass_throughs) {
+  const InterlacingCheck& check = assessment.interlacings;
+  if (check.intact == check.expected && pass_throughs == 0) return false;
+  std::cerr << file << ": error: broken: " << check.intact << " of " << check.expected
+            << " interlacings intact, " << pass_throughs << " pass-throughs\n";
+  return true;
+}
+
+}  // namespace loopwright

@@ -1,0 +1,40 @@
+// What the subcommands share: reading a piece from a notation or a saved state, and what they write.
+#pragma once
+#include <optional>
+#include <ostream>
+#include <string>
+
+#include "commands.hpp"
+#include "outputs/render.hpp"
+
+namespace loopwright {
+
+// A fabric and how mechanics is to treat it.
+struct Piece {
+  State state;
+  RelaxOptions options;
+};
+
+bool names_a_state(const std::string& file);
+
+// Reads a saved state, or a notation up to its first geometry. Says what is wrong on standard error; nothing
+// if there was an error.
+std::optional<Piece> read_piece(const std::string& file, const PieceRequest& request);
+
+// Throws FileError if a file of that name could not be written, before long work is done for it. Empty and
+// "-" pass.
+void require_writable(const std::string& file);
+
+// Throws std::invalid_argument for a size that is not WIDTHxHEIGHT, and for a name that is not that of a PNG.
+RenderOptions render_options(const PictureRequest& request, const std::string& png);
+
+// Where a line for people goes: standard output, unless JSON has that place.
+std::ostream& people(const std::string& json);
+
+// One line with the sizes of a cloth and whether it is whole.
+std::string summary(const Assessment& assessment);
+
+// Says on standard error if the cloth is not what the machine knitted; then its results are worth nothing.
+bool say_if_broken(const std::string& file, const Assessment& assessment, int pass_throughs);
+
+}  // namespace loopwright

@@ -1,0 +1,138 @@
+// The command line: which words are understood, and what they fill in. The work is done in the files of
+// commands.hpp.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <functional>
+#include <iostream>
+
+#include "commands.hpp"
+
+namespace {
+
+using namespace loopwright;
+
+struct Commands {
+  CheckCommand check;
+  BuildCommand build;
+  RelaxCommand relax;
+  RenderCommand render;
+  MeasureCommand measure;
+};
+
+void add_piece_options(CLI::App& command, PieceRequest& piece) {
+  CLI::Option* periodic = command.add_flag("--periodic", piece.periodic,
+                                           "One repeat of the structure as a cell that tiles the plane");
+  command
+      .add_option_function<std::string>(
+          "--window", [&piece](const std::string& text) { piece.window = parsed_window(text); },
+          "A part from the middle with held edges, in wales x courses: 16x16, allx16, 16xall")
+      ->type_name("WxC")
+      ->excludes(periodic);
+}
+
+void add_picture_options(CLI::App& command, PictureRequest& picture) {
+  command.add_option("--view", picture.view, "Where the picture is taken from")
+      ->check(CLI::IsMember({"front", "back", "left", "top", "corner"}))
+      ->capture_default_str();
+  command.add_option("--picture-size", picture.size, "Pixels of the picture")
+      ->type_name("WxH")
+      ->capture_default_str();
+}
+
+using Action = std::function<int()>;
+
+void add_commands(CLI::App& app, Commands& commands, Action& action) {
+  CLI::App* check = app.add_subcommand("check", "Say what is wrong in programmes and fabric files");
+  check->add_option("FILE", commands.check.files, "Knitout (.k, .knitout) or fabric (.verm) files")
+      ->required();
+  check
+      ->add_option("--json", commands.check.json,
+                   "Write the findings as JSON to a file, - for standard output")
+      ->type_name("FILE");
+  check->callback([&] { action = [&] { return run(commands.check); }; });
+
+  CLI::App* build = app.add_subcommand("build", "Write the first geometry, before mechanics");
+  build->add_option("FILE", commands.build.file, "Knitout or fabric file")->required();
+  build->add_option("-o,--out", commands.build.out, "What to write: the suffix chooses the format")
+      ->type_name("OUT")
+      ->required();
+  add_piece_options(*build, commands.build.piece);
+  build
+      ->add_option("--json", commands.build.json,
+                   "Write measurements as JSON to a file, - for standard output")
+      ->type_name("FILE");
+  build->callback([&] { action = [&] { return run(commands.build); }; });
+
+  CLI::App* relax = app.add_subcommand("relax", "Bring the cloth to equilibrium");
+  relax->add_option("FILE", commands.relax.file, "Knitout or fabric file, or a saved state to go on with")
+      ->required();
+  relax->add_option("-o,--out", commands.relax.out, "What to write: the suffix chooses the format")
+      ->type_name("OUT")
+      ->required();
+  add_piece_options(*relax, commands.relax.piece);
+  relax
+      ->add_option("--json", commands.relax.json,
+                   "Write measurements as JSON to a file, - for standard output")
+      ->type_name("FILE");
+  relax->add_option("--render", commands.relax.render, "Draw the relaxed cloth")->type_name("PNG");
+  add_picture_options(*relax, commands.relax.picture);
+  relax
+      ->add_option("--threads", commands.relax.threads,
+                   "Threads to use, 0 for all (results do not depend on it)")
+      ->check(CLI::Range(0, 4096))
+      ->capture_default_str();
+  relax->add_option("--most-iterations", commands.relax.most_iterations, "Stop after so many Newton steps")
+      ->check(CLI::Range(1, 1'000'000));
+  relax->callback([&] { action = [&] { return run(commands.relax); }; });
+
+  CLI::App* render =
+      app.add_subcommand("render", "Draw a picture of a file's first geometry or of a saved state");
+  render->add_option("FILE", commands.render.file, "Knitout or fabric file, or a saved state")->required();
+  render->add_option("-o,--out", commands.render.out, "The picture")->type_name("PNG")->required();
+  add_piece_options(*render, commands.render.piece);
+  add_picture_options(*render, commands.render.picture);
+  render->callback([&] { action = [&] { return run(commands.render); }; });
+
+  CLI::App* measure = app.add_subcommand("measure", "Measure a saved state");
+  measure->add_option("STATE", commands.measure.file, "A saved state")->required();
+  measure
+      ->add_option("--json", commands.measure.json,
+                   "Write measurements as JSON to a file, - for standard output")
+      ->type_name("FILE");
+  measure->callback([&] { action = [&] { return run(commands.measure); }; });
+
+  app.add_subcommand("version", "Print the version")->callback([&] {
+    action = [] {
+      std::cout << "loopwright " LOOPWRIGHT_VERSION "\n";
+      return exit_good;
+    };
+  });
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    CLI::App app("From a knitting notation to relaxed cloth", "loopwright");
+    app.set_version_flag("--version", "loopwright " LOOPWRIGHT_VERSION);
+    app.require_subcommand(1);
+    Commands commands;
+    Action action;
+    add_commands(app, commands, action);
+    try {
+      app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+      return app.exit(error) == 0 ? exit_good : exit_error;
+    }
+    const int status = action();
+    // a full disk or a closed pipe shows when the last bytes leave
+    if (!std::cout.flush()) throw std::runtime_error("cannot write to standard output");
+    return status;
+  } catch (const std::bad_alloc&) {
+    std::fputs("loopwright: error: not enough memory\n", stderr);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "loopwright: error: %s\n", error.what());
+  }
+  return exit_error;
+}

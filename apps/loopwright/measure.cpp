@@ -1,0 +1,31 @@
+// loopwright measure: sizes, densities and the interlacing check of a saved state.
+#include <stdexcept>
+
+#include "files.hpp"
+
+namespace loopwright {
+
+int run(const MeasureCommand& command) {
+  if (!names_a_state(command.file))
+    throw std::invalid_argument(command.file + ": measure takes a saved state; relax or build makes one");
+  require_writable(command.json);
+  const State state = read_state(command.file);
+  const Assessment assessment = assess(state.fabric);
+
+  // what the run that made the state found, beside what is measured now
+  JsonObject all = results(assessment);
+  const auto number = [&](const char* key) { return state.numbers.find(key); };
+  const auto none = state.numbers.end();
+  for (const char* key : {"pass_throughs", "newton_iterations", "linear_iterations"})
+    if (number(key) != none) all.emplace_back(key, static_cast<long long>(number(key)->second));
+  if (number("converged") != none) all.emplace_back("converged", number("converged")->second != 0);
+  if (number("residual") != none) all.emplace_back("residual", number("residual")->second);
+  if (!command.json.empty()) write_json(command.json, all);
+
+  people(command.json) << command.file << ": " << summary(assessment) << '\n';
+  const int pass_throughs =
+      number("pass_throughs") != none ? static_cast<int>(number("pass_throughs")->second) : 0;
+  return say_if_broken(command.file, assessment, pass_throughs) ? exit_error : exit_good;
+}
+
+}  // namespace loopwright

@@ -1,0 +1,167 @@
+#include "pipeline.hpp"
+
+#include <charconv>
+#include <stdexcept>
+
+#include "geometry/fit_fabric.hpp"
+#include "geometry/periodic_cell.hpp"
+#include "geometry/window.hpp"
+#include "machine/run_machine.hpp"
+#include "mechanics/yarn_material.hpp"
+#include "notation/read_program.hpp"
+#include "topology/build_yarn_graph.hpp"
+
+namespace loopwright {
+namespace {
+
+// "all" or a count of at least 1; nothing for anything else.
+std::optional<int> parsed_count(std::string_view text) {
+  if (text == "all") return 0;
+  int count = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
+  if (error != std::errc() || end != text.data() + text.size() || count < 1) return std::nullopt;
+  return count;
+}
+
+YarnCurves wanted_curves(const Knitting& knitting, const PieceRequest& request,
+                         const GeometryOptions& options) {
+  const YarnGraph& graph = knitting.graph;
+  const PlacedPiece piece = place_type_points(graph, options);
+  const Edges edges = knitting.program.settings.edges.value_or(Edges::bound_off);
+  if (request.periodic || (edges == Edges::periodic && !request.window))
+    return cut_periodic_cell(graph, options, piece, cell_range(knitting.program));
+  if (request.window)
+    return cut_window(graph, options, piece,
+                      middle_window(graph, piece.layout, request.window->wales, request.window->courses));
+  return cut_window(graph, options, piece, program_window(graph, knitting.program.window));
+}
+
+}  // namespace
+
+WindowSize parsed_window(std::string_view text) {
+  const std::size_t cross = text.find('x');
+  if (cross != std::string_view::npos) {
+    const std::optional<int> wales = parsed_count(text.substr(0, cross));
+    const std::optional<int> courses = parsed_count(text.substr(cross + 1));
+    if (wales && courses) return {*wales, *courses};
+  }
+  throw std::invalid_argument("a window is written WALESxCOURSES, such as 16x16, allx16 or 16xall, not '" +
+                              std::string(text) + "'");
+}
+
+Knitting knit(const std::filesystem::path& file, const PieceRequest& request, Diagnostics& diagnostics) {
+  FabricOptions options;
+  if (request.periodic) options.edges = Edges::periodic;
+  Knitting knitting;
+  knitting.program = read_program(file, diagnostics, options);
+  knitting.record = run_machine(knitting.program, diagnostics);
+  knitting.graph = build_yarn_graph(knitting.program, knitting.record, diagnostics);
+  return knitting;
+}
+
+Fabric first_geometry(const Knitting& knitting, const PieceRequest& request) {
+  if (knitting.graph.loops.empty()) throw std::invalid_argument("nothing was knitted: there is no loop");
+  const GeometryOptions options = make_geometry_options(knitting.program);
+  Fabric fabric = fit_fabric(wanted_curves(knitting, request, options), knitting.graph, options);
+  if (fabric.loops.empty()) throw std::invalid_argument("the part that is wanted holds no loop");
+  fabric.name = knitting.program.settings.name;
+  return fabric;
+}
+
+RelaxOptions relax_options(const Fabric& fabric, const Program& program) {
+  RelaxOptions options;
+  options.model.material = yarn_material(reference_yarn(program), fabric.diameter_mm);
+  return options;
+}
+
+RelaxOptions relax_options(const State& state) {
+  const auto number = [&state](const char* key) {
+    const auto found = state.numbers.find(key);
+    if (found == state.numbers.end())
+      throw std::invalid_argument(std::string("the state does not say its ") + key +
+                                  "; make it anew from its notation");
+    return found->second;
+  };
+  RelaxOptions options;
+  YarnMaterial& material = options.model.material;
+  material.stretch_stiffness = number("stretch_stiffness");
+  material.bend_stiffness = number("bend_stiffness");
+  material.contact.outer = number("contact_outer");
+  material.contact.core = number("contact_core");
+  material.contact.stiffness = number("contact_stiffness");
+  material.contact.exponent = number("contact_exponent");
+  options.grow_in = number("radius") < 1;
+  return options;
+}
+
+Assessment assess(const Fabric& fabric) {
+  return {measure(fabric), check_interlacings(fabric), min_clearance(fabric)};
+}
+
+JsonObject results(const Assessment& assessment) {
+  const Measurements& m = assessment.measured;
+  const auto known = [](const std::optional<double>& value) {
+    return value ? JsonValue(*value) : JsonValue(nullptr);
+  };
+  JsonArray yarn_m;
+  for (const YarnMeasurement& one : m.yarn) yarn_m.emplace_back(one.length_m);
+  return {{"loops", m.loops},
+          {"yarns", m.yarns},
+          {"wales", m.wales},
+          {"courses", m.courses},
+          {"width_mm", m.width_mm},
+          {"height_mm", m.height_mm},
+          {"thickness_mm", m.thickness_mm},
+          {"wale_spacing_mm", m.wale_spacing_mm},
+          {"course_spacing_mm", m.course_spacing_mm},
+          {"wales_per_cm", m.wales_per_cm},
+          {"courses_per_cm", m.courses_per_cm},
+          {"loop_length_mm", m.loop_length_mm},
+          {"Kc", m.Kc},
+          {"Kw", m.Kw},
+          {"Ks", m.Ks},
+          {"cover_factor", m.cover_factor},
+          {"tightness_factor_sqrt_tex_per_cm", known(m.tightness_factor)},
+          {"yarn_m", std::move(yarn_m)},
+          {"mass_g", known(m.mass_g)},
+          {"areal_density_g_m2", known(m.areal_density_g_m2)},
+          {"interlacings", assessment.interlacings.expected},
+          {"interlacings_intact", assessment.interlacings.intact},
+          {"min_clearance", assessment.clearance.distance}};
+}
+
+JsonObject results(const Assessment& assessment, const RelaxResult& relaxed) {
+  JsonObject all = results(assessment);
+  all.emplace_back("pass_throughs", relaxed.pass_throughs);
+  all.emplace_back("converged", relaxed.converged);
+  all.emplace_back("residual", relaxed.residual);
+  all.emplace_back("newton_iterations", relaxed.newton_iterations);
+  all.emplace_back("linear_iterations", relaxed.linear_iterations);
+  return all;
+}
+
+State saved_state(const Fabric& fabric, const RelaxOptions& options, double radius) {
+  const YarnMaterial& material = options.model.material;
+  State state;
+  state.fabric = fabric;
+  state.numbers = {{"stretch_stiffness", material.stretch_stiffness},
+                   {"bend_stiffness", material.bend_stiffness},
+                   {"contact_outer", material.contact.outer},
+                   {"contact_core", material.contact.core},
+                   {"contact_stiffness", material.contact.stiffness},
+                   {"contact_exponent", material.contact.exponent},
+                   {"radius", radius}};
+  return state;
+}
+
+State saved_state(const RelaxResult& relaxed, const RelaxOptions& options, double radius) {
+  State state = saved_state(relaxed.fabric, options, radius);
+  state.numbers["pass_throughs"] = relaxed.pass_throughs;
+  state.numbers["converged"] = relaxed.converged ? 1 : 0;
+  state.numbers["residual"] = relaxed.residual;
+  state.numbers["newton_iterations"] = relaxed.newton_iterations;
+  state.numbers["linear_iterations"] = relaxed.linear_iterations;
+  return state;
+}
+
+}  // namespace loopwright

@@ -1,0 +1,75 @@
+// The whole road on one page: from a notation to relaxed, measured cloth. Each call below is one stretch of
+// it; a program that wants to look in between calls the stages themselves, in the same order.
+//
+//   knit            read_program -> run_machine -> build_yarn_graph
+//   first_geometry  place_type_points -> cut_window or cut_periodic_cell -> fit_fabric
+//   relax           (mechanics/relax.hpp) with relax_options
+//   assess          measure, check_interlacings, min_clearance
+//   results         all numbers as one JSON object; saved_state, write_fabric, render: the rest of outputs
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "base/diagnostics.hpp"
+#include "experiments/measure.hpp"
+#include "geometry/fabric.hpp"
+#include "geometry/interlacing.hpp"
+#include "machine/knitting_record.hpp"
+#include "mechanics/relax.hpp"
+#include "notation/program.hpp"
+#include "outputs/state.hpp"
+#include "outputs/write_json.hpp"
+#include "topology/yarn_graph.hpp"
+
+namespace loopwright {
+
+// Wales and courses to take from the middle of a piece; 0: all of them.
+struct WindowSize {
+  int wales = 0, courses = 0;
+};
+// "16x16", "allx16", "16xall". Throws std::invalid_argument that says so.
+WindowSize parsed_window(std::string_view text);
+
+// What is wanted of a file's fabric. Neither: what the file's edges say; the whole piece for knitout.
+struct PieceRequest {
+  bool periodic = false;             // one repeat of the structure, as a cell
+  std::optional<WindowSize> window;  // a part with held edges
+};
+
+// notation -> machine -> topology. What is wrong is said in `diagnostics`; what could be understood is there.
+struct Knitting {
+  Program program;
+  KnittingRecord record;
+  YarnGraph graph;
+};
+Knitting knit(const std::filesystem::path& file, const PieceRequest& request, Diagnostics& diagnostics);
+
+// geometry: the yarns in space before mechanics. Throws std::invalid_argument where the piece has no such
+// part.
+Fabric first_geometry(const Knitting& knitting, const PieceRequest& request);
+
+// mechanics: how relax() is to treat a first geometry, from the data of its thickest yarn.
+RelaxOptions relax_options(const Fabric& fabric, const Program& program);
+// The same for a saved state: it holds what is needed, and how far it was. Throws std::invalid_argument if
+// not.
+RelaxOptions relax_options(const State& state);
+
+// experiments: what is measured, and whether the cloth still is what the machine knitted.
+struct Assessment {
+  Measurements measured;
+  InterlacingCheck interlacings;
+  Clearance clearance;
+};
+Assessment assess(const Fabric& fabric);
+
+// outputs: keys with their units, as docs/command.md lists them.
+JsonObject results(const Assessment& assessment);
+JsonObject results(const Assessment& assessment, const RelaxResult& relaxed);
+// What a saved state holds beside the fabric, so that it can be gone on with and measured. `radius`: share of
+// the yarn's full radius to which it has grown, 0 for a first geometry.
+State saved_state(const Fabric& fabric, const RelaxOptions& options, double radius);
+State saved_state(const RelaxResult& relaxed, const RelaxOptions& options, double radius);
+
+}  // namespace loopwright

@@ -1,6 +1,7 @@
 #include "geometry/fit_fabric.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -9,6 +10,14 @@
 namespace loopwright {
 namespace {
 
+constexpr std::size_t samples_per_segment = 4;
+
+Centreline centreline_of(const CurveYarn& curve, const Vec3& shift) {
+  std::vector<Vec3> points;
+  for (const TypePoint& point : curve.points) points.push_back(point.position);
+  return curve.periodic ? Centreline::periodic(points, shift) : Centreline::open(points);
+}
+
 std::vector<double> cumulative(const std::vector<double>& lengths) {
   std::vector<double> sums{0};
   for (const double length : lengths) sums.push_back(sums.back() + length);
@@ -16,14 +25,11 @@ std::vector<double> cumulative(const std::vector<double>& lengths) {
 }
 
 // Points of the centreline at equal rest length; `count` steps, the last point only for open yarns.
-std::vector<Vec3> equal_samples(const CurveYarn& curve, const Vec3& shift, std::size_t count) {
-  std::vector<Vec3> points;
-  for (const TypePoint& point : curve.points) points.push_back(point.position);
-  const Centreline line = curve.periodic ? Centreline::periodic(points, shift) : Centreline::open(points);
-  const std::vector<double> rest = cumulative(curve.rest_length);
+std::vector<Vec3> equal_samples(const Centreline& line, const std::vector<double>& rest, bool periodic,
+                                std::size_t count) {
   std::vector<Vec3> samples;
   std::size_t piece = 0;
-  for (std::size_t k = 0; k < count + (curve.periodic ? 0 : 1); ++k) {
+  for (std::size_t k = 0; k < count + (periodic ? 0 : 1); ++k) {
     const double at = rest.back() * static_cast<double>(k) / static_cast<double>(count);
     while (piece + 2 < rest.size() && rest[piece + 1] < at) ++piece;
     const double step = rest[piece + 1] - rest[piece];
@@ -60,6 +66,48 @@ std::vector<Vec3> periodic_control_points(const std::vector<Vec3>& samples, cons
   std::vector<Vec3> control{x[n - 1] - shift};
   control.insert(control.end(), x.begin(), x.end() - 1);
   return control;
+}
+
+// Few segments cannot go through everything: interpolation at the knots alone cuts the bends between them and
+// may halve the clearance of a crossing. Moves the control points toward the least-squares fit of all samples
+// (progressive iterative approximation: every control point takes the mean error of the samples that it acts
+// on).
+void approach_samples(const Fabric& fabric, const std::vector<Vec3>& samples, FabricYarn& yarn) {
+  constexpr int sweeps = 12;
+  const std::size_t n = yarn.control_points.size();
+  // Weights of the four control points at u = 0, 1/4, 1/2, 3/4 of a segment.
+  std::array<std::array<double, 4>, samples_per_segment> weights{};
+  for (std::size_t j = 0; j < samples_per_segment; ++j) {
+    const double u = static_cast<double>(j) / samples_per_segment, v = 1 - u;
+    weights[j] = {v * v * v / 6, (3 * u * u * u - 6 * u * u + 4) / 6,
+                  (-3 * u * u * u + 3 * u * u + 3 * u + 1) / 6, u * u * u / 6};
+  }
+  const Vec3 shift = fabric.lattice(yarn.shift[0], yarn.shift[1]);
+  std::vector<Vec3> change(n);
+  std::vector<double> weight(n);
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    std::fill(change.begin(), change.end(), Vec3{});
+    std::fill(weight.begin(), weight.end(), 0);
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+      const std::size_t segment = k / samples_per_segment;
+      const std::array<double, 4>& w = weights[k % samples_per_segment];
+      Vec3 error = samples[k];
+      for (std::size_t i = 0; i < 4; ++i) {
+        if (w[i] == 0) continue;
+        const std::size_t at = segment + i;
+        error -= (at < n ? yarn.control_points[at] : yarn.control_points[at - n] + shift) * w[i];
+      }
+      for (std::size_t i = 0; i < 4; ++i) {
+        if (w[i] == 0) continue;
+        const std::size_t at = segment + i < n ? segment + i : segment + i - n;
+        change[at] += error * w[i];
+        weight[at] += w[i];
+      }
+    }
+    // Ends stay where interpolation put them.
+    const std::size_t first = yarn.periodic ? 0 : 2, last = yarn.periodic ? n : n - 2;
+    for (std::size_t i = first; i < last; ++i) yarn.control_points[i] += change[i] / weight[i];
+  }
 }
 
 // Control point k has most weight at parameter k - 1.
@@ -143,9 +191,10 @@ Fabric fit_fabric(const YarnCurves& curves, const YarnGraph& graph, const Geomet
     const std::size_t segments = static_cast<std::size_t>(std::max(fewest, std::round(rest.back() / wanted)));
     yarn.segment_rest_length = rest.back() / static_cast<double>(segments);
     const Vec3 shift = fabric.lattice(curve.shift[0], curve.shift[1]);
-    const std::vector<Vec3> samples = equal_samples(curve, shift, segments);
-    yarn.control_points =
-        curve.periodic ? periodic_control_points(samples, shift) : open_control_points(samples);
+    const Centreline line = centreline_of(curve, shift);
+    const std::vector<Vec3> knots = equal_samples(line, rest, curve.periodic, segments);
+    yarn.control_points = curve.periodic ? periodic_control_points(knots, shift) : open_control_points(knots);
+    approach_samples(fabric, equal_samples(line, rest, curve.periodic, segments * samples_per_segment), yarn);
     hold_control_points(curve, rest, yarn);
     add_spans(curve, rest, graph, static_cast<int>(fabric.yarns.size()), yarn.segment_rest_length,
               fabric.loops);

@@ -47,6 +47,7 @@ struct LoopWindow {
   int begin = 0, apex = 0, end = 0;        // nominal, in samples
   double half_before = 0, half_after = 0;  // of the loop's own yarn, floats left out
   Direction direction = Direction::right;
+  int order = 0;  // place in Fabric::loops
 };
 
 Vec3 centroid(const LoopWindow& window) {
@@ -138,9 +139,9 @@ class Fan {
   Vec3 low_, high_, centre_;
 };
 
-bool is_intact(const LoopWindow& parent, const LoopWindow& child, const Vec3& moved, int sign) {
-  const Vec3 up = centroid(child) + moved - centroid(parent);
-  const int head = top_of_head(parent, up), child_head = top_of_head(child, up);
+bool is_intact(const LoopWindow& parent, const LoopWindow& child, const Vec3& up, const Vec3& child_up,
+               const Vec3& moved, int sign) {
+  const int head = top_of_head(parent, up), child_head = top_of_head(child, child_up);
   const double neck_share = neck / 0.5;
   const Fan fan(piece(*parent.yarn, head - static_cast<int>(std::lround(neck_share * parent.half_before)),
                       head + static_cast<int>(std::lround(neck_share * parent.half_after)), Vec3{}));
@@ -151,6 +152,38 @@ bool is_intact(const LoopWindow& parent, const LoopWindow& child, const Vec3& mo
       parent.direction == Direction::left ? 1 : -1;  // the rim's normal points to the front, to the rear
   return sense * fan.passes(piece(*child.yarn, first, child_head, moved)) == sign &&
          sense * fan.passes(piece(*child.yarn, child_head, last, moved)) == -sign;
+}
+
+// The wale direction at every loop: from loops to their children, averaged along the yarn, so that a single
+// leaning loop (lace, cable) does not mislead, with a little of the whole piece's where there are few
+// neighbours.
+std::vector<Vec3> wale_directions(const Fabric& fabric,
+                                  const std::unordered_map<LoopId, LoopWindow>& windows) {
+  constexpr std::size_t neighbours = 8;
+  const std::size_t n = fabric.loops.size();
+  std::vector<Vec3> sums(n + 1);
+  Vec3 whole;
+  for (const PlacedInterlacing& interlacing : fabric.interlacings) {
+    const auto parent = windows.find(interlacing.parent), child = windows.find(interlacing.child);
+    if (parent == windows.end() || child == windows.end()) continue;
+    const Vec3 step = centroid(child->second) + fabric.lattice(interlacing.shift[0], interlacing.shift[1]) -
+                      centroid(parent->second);
+    sums[static_cast<std::size_t>(parent->second.order) + 1] += step;
+    whole += step;
+  }
+  for (std::size_t k = 0; k < n; ++k) sums[k + 1] += sums[k];
+  if (norm(whole) > 0) whole = normalized(whole);
+  std::vector<Vec3> directions(n);
+  std::size_t yarn_begin = 0;
+  for (std::size_t k = 0; k < n; ++k) {
+    if (fabric.loops[k].yarn != fabric.loops[yarn_begin].yarn) yarn_begin = k;
+    std::size_t last = k;
+    while (last + 1 < n && last < k + neighbours && fabric.loops[last + 1].yarn == fabric.loops[k].yarn)
+      ++last;
+    const std::size_t first = std::max(yarn_begin, k > neighbours ? k - neighbours : 0);
+    directions[k] = sums[last + 1] - sums[first] + whole;
+  }
+  return directions;
 }
 
 }  // namespace
@@ -175,7 +208,8 @@ InterlacingCheck check_interlacings(const Fabric& fabric) {
   }
 
   std::unordered_map<LoopId, LoopWindow> windows;
-  for (const LoopSpan& span : fabric.loops) {
+  for (std::size_t k = 0; k < fabric.loops.size(); ++k) {
+    const LoopSpan& span = fabric.loops[k];
     const SampledYarn& yarn = yarns[static_cast<std::size_t>(span.yarn)];
     LoopWindow window;
     window.yarn = &yarn;
@@ -186,15 +220,20 @@ InterlacingCheck check_interlacings(const Fabric& fabric) {
     window.half_before = std::min<double>(window.apex - window.begin, window.loop / 2);
     window.half_after = std::min<double>(window.end - window.apex, window.loop / 2);
     window.direction = span.direction;
+    window.order = static_cast<int>(k);
     windows.emplace(span.loop, window);
   }
+  const std::vector<Vec3> directions = wale_directions(fabric, windows);
   for (std::size_t k = 0; k < fabric.interlacings.size(); ++k) {
     const PlacedInterlacing& interlacing = fabric.interlacings[k];
     const auto parent = windows.find(interlacing.parent), child = windows.find(interlacing.child);
-    const bool intact =
-        parent != windows.end() && child != windows.end() &&
-        is_intact(parent->second, child->second, fabric.lattice(interlacing.shift[0], interlacing.shift[1]),
-                  interlacing.sign);
+    bool intact = parent != windows.end() && child != windows.end();
+    if (intact) {
+      const Vec3& up = directions[static_cast<std::size_t>(parent->second.order)];
+      const Vec3& child_up = directions[static_cast<std::size_t>(child->second.order)];
+      const Vec3 moved = fabric.lattice(interlacing.shift[0], interlacing.shift[1]);
+      intact = is_intact(parent->second, child->second, up, child_up, moved, interlacing.sign);
+    }
     if (intact)
       ++check.intact;
     else

@@ -19,7 +19,7 @@ constexpr double yarn_weight = 1, covered_tuck_weight = 0.1, passed_weight = 0.1
 // A held loop grows by this share of a course for every float or tuck that must find room along its legs.
 constexpr double growth_per_event = 0.45, most_growth = 2.5;
 constexpr double tuck_height = 0.6;  // of a course, where nothing is held below it
-constexpr double anchor_weight = 1e-6;
+constexpr double anchor_weight = 1e-9;
 
 class Nodes {  // union-find: lower nodes 0 .. n-1, upper nodes n .. 2n-1
  public:
@@ -252,22 +252,31 @@ Layout lay_out(const YarnGraph& graph, const GeometryOptions& options) {
   layout.slot_pitch = options.wale_pitch / slots_per_wale(graph);
 
   const std::size_t n = graph.loops.size();
+  // x of a node: where the feet of its children stand; a head without children lies where its needle was.
+  std::vector<double> slot(2 * n), feet(2 * n);
+  for (std::size_t i = 0; i < n; ++i) {
+    slot[nodes.lower(LoopId(i))] += graph.loops[i].slot;
+    feet[nodes.lower(LoopId(i))] += 1;
+  }
+  for (std::size_t i = 0; i < n; ++i)
+    if (const std::size_t node = nodes.upper(LoopId(i)); feet[node] == 0)
+      slot[node] = graph.loops[i].head_slot;
+  for (std::size_t i = 0; i < 2 * n; ++i)
+    if (feet[i] > 0) slot[i] /= feet[i];
   layout.lower.resize(n);
   layout.upper.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
-    const Loop& loop = graph.loops[i];
     const std::size_t low = nodes.lower(LoopId(i)), high = nodes.upper(LoopId(i));
-    layout.lower[i] = {loop.slot * layout.slot_pitch, y[static_cast<Eigen::Index>(low)], z[low]};
-    // The head lies where its children's feet stand; a head without children where its needle was.
-    const double head_slot = loop.children.empty() ? loop.head_slot : graph.loop(loop.children.front()).slot;
-    layout.upper[i] = {head_slot * layout.slot_pitch, y[static_cast<Eigen::Index>(high)], z[high]};
+    layout.lower[i] = {slot[low] * layout.slot_pitch, y[static_cast<Eigen::Index>(low)], z[low]};
+    layout.upper[i] = {slot[high] * layout.slot_pitch, y[static_cast<Eigen::Index>(high)], z[high]};
   }
   // A binding point with little room above or below it gets a flatter template, the same for all that meet
   // there.
   std::vector<double> scale(2 * n, 1);
   for (std::size_t i = 0; i < n; ++i) {
     if (graph.loops[i].kind == LoopKind::tuck) continue;
-    const double room = (layout.upper[i].y - layout.lower[i].y) / (0.75 * options.course_pitch);
+    const Vec3 step = layout.upper[i] - layout.lower[i];
+    const double room = std::hypot(step.x, step.y) / (0.75 * options.course_pitch);
     for (const std::size_t node : {nodes.lower(LoopId(i)), nodes.upper(LoopId(i))})
       scale[node] = std::clamp(room, 0.3, scale[node]);
   }

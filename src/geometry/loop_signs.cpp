@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace loopwright {
 namespace {
@@ -9,19 +10,69 @@ namespace {
 constexpr double layer_gap =
     2.2;  // between yarns that lie over each other, in r: a little more than they are thick
 constexpr double crossing_gap = 2.6;  // between legs that cross
-constexpr double split_reach = 2;     // feet that go both ways through one head: leg between them
 constexpr double split_spread = 1.7;
 
-// Loops drawn through the same head, front one first.
+// Loops drawn through the same head to the same side, front one first.
 std::vector<LoopId> plated_group(const YarnGraph& graph, LoopId id, const Loop& loop) {
   std::vector<LoopId> group;
-  if (loop.parents.empty()) return {id};
   for (const LoopId sibling : graph.loop(loop.parents.front()).children)
-    if (graph.loop(sibling).side == loop.side && graph.loop(sibling).instruction == loop.instruction)
-      group.push_back(sibling);
-  std::stable_sort(group.begin(), group.end(),
-                   [&](LoopId a, LoopId b) { return graph.loop(a).head_rank < graph.loop(b).head_rank; });
+    if (graph.loop(sibling).side == loop.side) group.push_back(sibling);
+  if (group.empty()) group.push_back(id);
+  std::stable_sort(group.begin(), group.end(), [&](LoopId a, LoopId b) {
+    return graph.loop(a).instruction == graph.loop(b).instruction &&
+           graph.loop(a).head_rank < graph.loop(b).head_rank;
+  });
   return group;
+}
+
+// For every loop the fullest stack that its head lies in.
+std::vector<std::vector<LoopId>> stacks_of_heads(const YarnGraph& graph) {
+  std::vector<std::vector<LoopId>> stack_of(graph.loops.size());
+  for (const Loop& loop : graph.loops)
+    for (const LoopId parent : loop.parents)
+      if (loop.parents.size() > stack_of[parent.position()].size())
+        stack_of[parent.position()] = loop.parents;
+  return stack_of;
+}
+
+// A passes behind (s > 0) the upper legs of all parents and B before their heads. A head in the same stack
+// that the loop is not drawn through (a split loop's parents joined it later) is left wholly behind or wholly
+// in front.
+void clear_parents(const YarnGraph& graph, LoopId id, const std::vector<LoopId>& stack,
+                   std::vector<LoopSigns>& signs) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const Loop& loop = graph.loop(id);
+  LoopSigns& sign = signs[id.position()];
+  const double s = sign.s;
+  // Everything mirrored to s = +1.
+  double leg = infinity, head = -infinity, nearest = infinity, farthest = -infinity;
+  for (const LoopId parent : loop.parents) {
+    const LoopSigns& of = signs[parent.position()];
+    const double layer = s * of.head_layer, c = s * of.c * crossing_reach;
+    leg = std::min(leg, layer + c);
+    head = std::max(head, layer - c);
+    nearest = std::min(nearest, layer);
+    farthest = std::max(farthest, layer);
+  }
+  double behind = -infinity, before = infinity;
+  for (const LoopId other : stack) {
+    if (std::find(loop.parents.begin(), loop.parents.end(), other) != loop.parents.end()) continue;
+    const LoopSigns& of = signs[other.position()];
+    const double layer = s * of.head_layer, c = std::abs(of.c) * crossing_reach;
+    if (layer < nearest) behind = std::max(behind, layer + c);
+    if (layer > farthest) before = std::min(before, layer - c);
+  }
+  double foot = leg - 2 * crossing_reach, lower_leg = head + 2 * crossing_reach;
+  if (foot < behind + crossing_reach) foot = (leg + behind) / 2;
+  if (lower_leg > before - crossing_reach) lower_leg = (head + before) / 2;
+
+  const std::vector<LoopId> group = plated_group(graph, id, loop);
+  const double count = static_cast<double>(group.size());
+  const double from_front = static_cast<double>(std::find(group.begin(), group.end(), id) - group.begin());
+  const double rank = s > 0 ? from_front : count - 1 - from_front;  // 0: nearest to where the loop comes out
+  sign.foot_layer = s * ((count - 1) / 2 - rank) * layer_gap;
+  sign.foot = s * (foot - rank * layer_gap);
+  sign.lower_leg = s * (lower_leg + (count - 1 - rank) * layer_gap);
 }
 
 // Cables: move crossing legs apart, face stitches forward and rear stitches back, until every pair has its
@@ -52,35 +103,35 @@ void separate_legs(const YarnGraph& graph, const Layout& layout, double r, std::
 }  // namespace
 
 std::vector<LoopSigns> loop_signs(const YarnGraph& graph, const Layout& layout, double shape_radius) {
+  const std::vector<std::vector<LoopId>> stack_of = stacks_of_heads(graph);
   std::vector<LoopSigns> signs(graph.loops.size());
   for (std::size_t i = 0; i < graph.loops.size(); ++i) {
     const Loop& loop = graph.loops[i];
     LoopSigns& sign = signs[i];
     sign.s = stitch_sign(loop.side);
     sign.c = sign.s;
-    if (!loop.children.empty()) {
-      bool front = false, rear = false;
-      for (const LoopId child : loop.children)
-        (graph.loop(child).side == StitchSide::front ? front : rear) = true;
-      sign.c = front && rear ? 0 : front ? 1 : -1;
-      if (front && rear) sign.head_spread = split_spread;
-    }
-    const double stack_half = (std::max(loop.head_count, 1) - 1) / 2.0 * layer_gap;
-    sign.head_layer = stack_half - loop.head_rank * layer_gap;
-
-    if (loop.parents.empty()) continue;
-    const std::vector<LoopId> group = plated_group(graph, LoopId(i), loop);
-    const auto rank = std::find(group.begin(), group.end(), LoopId(i)) - group.begin();
-    const double group_half = (static_cast<double>(group.size()) - 1) / 2 * layer_gap;
-    sign.foot_layer = group_half - static_cast<double>(rank) * layer_gap;
-    const double parents_half = (static_cast<double>(loop.parents.size()) - 1) / 2 * layer_gap;
-    sign.foot_reach = 1 + parents_half + group_half;
-    for (const LoopId sibling : graph.loop(loop.parents.front()).children) {
-      if (graph.loop(sibling).side == loop.side) continue;
-      sign.foot_reach = std::max(sign.foot_reach, parents_half + split_reach);
-      if (sibling < LoopId(i)) sign.foot_spread = split_spread;
-    }
+    sign.foot = -sign.s * crossing_reach;
+    sign.lower_leg = sign.s * crossing_reach;
+    sign.head_layer = ((std::max(loop.head_count, 1) - 1) / 2.0 - loop.head_rank) * layer_gap;
+    if (loop.children.empty()) continue;
+    bool front = false, rear = false;
+    for (const LoopId child : loop.children)
+      (graph.loop(child).side == StitchSide::front ? front : rear) = true;
+    sign.c = front && rear ? 0 : front ? 1 : -1;
   }
+  // Children that go both ways through a head stand side by side in it, and all heads of the stack are wider
+  // for them.
+  for (std::size_t i = 0; i < graph.loops.size(); ++i) {
+    if (signs[i].c != 0) continue;
+    for (const LoopId member : stack_of[i]) signs[member.position()].head_spread = split_spread;
+    const std::vector<LoopId>& children = graph.loops[i].children;
+    for (const LoopId child : children)
+      if (graph.loop(child).side != graph.loop(children.front()).side)
+        signs[child.position()].foot_spread = split_spread;
+  }
+  for (std::size_t i = 0; i < graph.loops.size(); ++i)
+    if (!graph.loops[i].parents.empty())
+      clear_parents(graph, LoopId(i), stack_of[graph.loops[i].parents.front().position()], signs);
   separate_legs(graph, layout, shape_radius, signs);
   return signs;
 }

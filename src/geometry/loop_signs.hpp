@@ -9,11 +9,15 @@ namespace loopwright {
 
 inline int stitch_sign(StitchSide side) { return static_cast<int>(side); }
 
+// z of a yarn at a crossing of foot and leg or leg and head, in r (DESIGN section 5).
+inline constexpr double crossing_reach = 1;
+
 // All z in yarn radii.
 struct LoopSigns {
-  int s = 1;               // of the loop itself
-  double c = 1;            // of its children; 0: children of both signs (split loops)
-  double foot_reach = 1;   // |z| of the foot (A) and the lower leg (B) against the parents' layers
+  int s = 1;     // of the loop itself
+  double c = 1;  // of its children; 0: children of both signs (split loops)
+  // z of the foot (A) and the lower leg (B): clear of the layers of all heads that they cross.
+  double foot = -crossing_reach, lower_leg = crossing_reach;
   double foot_layer = 0;   // z of the loop among plated loops that go through the same parents
   double head_layer = 0;   // z of its head in its stack, front positive
   double foot_spread = 0;  // the feet stand so much farther out, beside a sibling that goes the other way

@@ -64,9 +64,14 @@ class LoopPlacer {
     const Vec3 outward{along.y, -along.x, 0};
     return low + (high - low) * share + outward * (across * sx_) + Vec3{0, 0, z * r_};
   }
-  bool leans(LoopId id) const {
+  double leaning(LoopId id) const {  // in wales, to the right
     const std::size_t i = id.position();
-    return std::abs(layout_.upper[i].x - layout_.lower[i].x) > 0.4 * 8 * sx_;
+    return (layout_.upper[i].x - layout_.lower[i].x) / (8 * sx_);
+  }
+  double steepness(LoopId id) const {  // 1 upright, 0 on its side
+    const std::size_t i = id.position();
+    const double x = layout_.upper[i].x - layout_.lower[i].x, y = layout_.upper[i].y - layout_.lower[i].y;
+    return std::max(y, 0.0) / std::max(std::hypot(x, y), 1e-9);
   }
 
   void half(LoopId id, double side, std::vector<TypePoint>& points) const {
@@ -81,21 +86,26 @@ class LoopPlacer {
     // the direction in which the stitch goes anyway.
     const double low_share = sign.leg_offset * s > 0 ? 0.5 : 0,
                  high_share = sign.leg_offset * c > 0 ? 0.5 : 0;
-    points.push_back(
-        point(id, LoopPart::foot, at_lower(id, side * (2.556 + spread), -1.556, foot - s * sign.foot_reach)));
+    points.push_back(point(id, LoopPart::foot, at_lower(id, side * (2.556 + spread), -1.556, sign.foot)));
     points.push_back(point(id, LoopPart::foot, at_lower(id, side * (1 + spread), 0, foot)));
-    points.push_back(point(id, LoopPart::leg,
-                           at_lower(id, side * (1.444 + spread), 1.556,
-                                    foot + s * sign.foot_reach + low_share * sign.leg_offset)));
+    points.push_back(
+        point(id, LoopPart::leg,
+              at_lower(id, side * (1.444 + spread), 1.556, sign.lower_leg + low_share * sign.leg_offset)));
     const auto leg = [&](double share, double across, double bulge) {
       const double layer = std::abs(foot) > 0 ? foot + (head - foot) * share : head;
       points.push_back(
           point(id, LoopPart::leg, on_leg(id, share, side * across, bulge + layer + sign.leg_offset)));
     };
-    if (leans(id)) {
-      leg(0.3, 1.8, 1.5 * (0.7 * s + 0.3 * c));
-      leg(0.5, 2, 0.75 * (s + c));
-      leg(0.7, 2.2, 1.5 * (0.3 * s + 0.7 * c));
+    if (const double lean = leaning(id); std::abs(lean) > 0.4) {
+      // The more a loop lies on its side, the farther its lower leg must swing out below the head and its
+      // upper leg above the feet: the head stays upright on its needle, and so do the feet.
+      const bool lower = side * lean > 0;
+      const double steep = steepness(id), swing = 1.5 * std::max(0.0, 1 - 2 * steep);
+      // Loops that lean side by side are nearer to each other the more they lean, and so are their legs.
+      const double width = std::max(steep, 1 - 2 * steep);
+      leg(0.3, 1.8 * width + (lower ? 0 : swing), 1.5 * (0.7 * s + 0.3 * c));
+      leg(0.5, 2 * width + swing / 2, 0.75 * (s + c));
+      leg(0.7, 2.2 * width + (lower ? swing : 0), 1.5 * (0.3 * s + 0.7 * c));
     } else {
       leg(0.5, 2, 0.75 * (s + c));
     }
@@ -108,10 +118,12 @@ class LoopPlacer {
     const LoopSigns& sign = signs_[id.position()];
     const double c = sign.c, wide = sign.head_spread, head = sign.head_layer;
     points.push_back(
-        point(id, LoopPart::leg, at_upper(id, side * (2.556 + wide), -1.556, upper_leg_layer + c)));
+        point(id, LoopPart::leg,
+              at_upper(id, side * (2.556 + wide), -1.556, upper_leg_layer + crossing_reach * c)));
     points.push_back(point(id, LoopPart::leg, at_upper(id, side * (3 + wide), 0, head)));
     points.push_back(
-        point(id, LoopPart::head, at_upper(id, side * (1.444 + wide), 1.556 + 0.4 * wide, head - c)));
+        point(id, LoopPart::head,
+              at_upper(id, side * (1.444 + wide), 1.556 + 0.4 * wide, head - crossing_reach * c)));
   }
   TypePoint apex(LoopId id) const {
     const LoopSigns& sign = signs_[id.position()];
@@ -119,15 +131,21 @@ class LoopPlacer {
                  at_upper(id, 0, 3 + 0.4 * sign.head_spread, sign.head_layer - 1.5 * sign.c));
   }
 
-  // A tuck's feet pass through nothing: they stand wide, outside the legs of the loop that the tuck lies on.
+  // A tuck's feet pass through nothing: they stand wide, outside the legs of the loop that the tuck lies on,
+  // and always below its head, however much the loops round it were pulled up.
   void tuck_half(LoopId id, double side, std::vector<TypePoint>& points) const {
     const LoopSigns& sign = signs_[id.position()];
     const double c = sign.c, s = sign.s, head = sign.head_layer;
-    points.push_back(point(id, LoopPart::foot, at_lower(id, side * 3.4, -1.5, -1.2 * s)));
-    points.push_back(point(id, LoopPart::leg, on_leg(id, 0.35, side * 3.2, head - 0.5 * s)));
-    points.push_back(point(id, LoopPart::leg, at_upper(id, side * 3.3, -1.556, head + 0.7 * c)));
+    Vec3 foot = at_lower(id, side * 3.4, -1.5, -1.2 * s);
+    const Vec3 upper_leg = at_upper(id, side * 3.3, -1.556, head + 0.7 * c);
+    foot.y = std::min(foot.y, upper_leg.y - 2 * sy_);
+    Vec3 leg = foot + (upper_leg - foot) * 0.45;
+    leg.z = (foot.z + upper_leg.z) / 2 - 0.3 * s * r_;
+    points.push_back(point(id, LoopPart::foot, foot));
+    points.push_back(point(id, LoopPart::leg, leg));
+    points.push_back(point(id, LoopPart::leg, upper_leg));
     points.push_back(point(id, LoopPart::leg, at_upper(id, side * 3.3, 0, head)));
-    points.push_back(point(id, LoopPart::head, at_upper(id, side * 1.6, 1.7, head - c)));
+    points.push_back(point(id, LoopPart::head, at_upper(id, side * 1.6, 1.7, head - crossing_reach * c)));
   }
 
   const YarnGraph& graph_;

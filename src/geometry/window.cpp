@@ -9,8 +9,10 @@
 namespace loopwright {
 namespace {
 
-// A tube: at most of its turns the yarn goes over to the other bed.
-bool is_tube(const YarnGraph& graph) {
+// A tube: two layers, and at most of its turns the yarn goes over to the other bed.
+bool is_tube(const YarnGraph& graph, const Layout& layout) {
+  const auto faced = std::count(layout.faced.begin(), layout.faced.end(), 1);
+  if (2 * static_cast<std::size_t>(faced) < graph.loops.size()) return false;
   int turns = 0, changes = 0;
   for (const GraphYarn& yarn : graph.yarns)
     for (std::size_t k = 0; k + 1 < yarn.loops.size(); ++k) {
@@ -35,7 +37,7 @@ LoopSelection middle_window(const YarnGraph& graph, const Layout& layout, int wa
   slots.erase(std::unique(slots.begin(), slots.end(), [](double a, double b) { return b - a < 0.25; }),
               slots.end());
   std::size_t columns = slots.size();
-  if (wales > 0 && static_cast<std::size_t>(wales) < slots.size() && !is_tube(graph)) {
+  if (wales > 0 && static_cast<std::size_t>(wales) < slots.size() && !is_tube(graph, layout)) {
     columns = static_cast<std::size_t>(wales);
     const std::size_t first = (slots.size() - columns) / 2;
     const double low = slots[first] - 0.125, high = slots[first + columns - 1] + 0.125;

@@ -142,6 +142,11 @@ Material read_material(std::string_view text, Diagnostics& diagnostics) {
 }
 
 void read_yarn(std::string_view value, SourceLocation at, YarnData& yarn, Diagnostics& diagnostics) {
+  constexpr std::size_t longest = 2000;
+  if (value.size() > longest) {
+    diagnostics.error(at, "a yarn is told in at most " + std::to_string(longest) + " bytes");
+    return;
+  }
   // The name ends and a value ends where the next word with a '=' in it starts.
   struct Part {
     std::size_t begin, equals, end;

@@ -29,9 +29,11 @@ constexpr std::string_view magic = ";!vermiculation-";
 constexpr std::size_t most_wales = 10'000;       // of one written pass
 constexpr std::size_t most_letters = 5'000'000;  // of the whole notation, repeats written out
 constexpr std::size_t most_lines = 100'000;      // the same in lines
+constexpr std::size_t most_passes = 1000;        // of one line
 constexpr std::size_t most_yarns = 26;
 constexpr int deepest_group = 32;
-constexpr double largest_racking = 8;  // what a Shima converter accepts
+constexpr int most_unknown_letters = 20;  // of one line, then the line is no course at all
+constexpr double largest_racking = 8;     // what a Shima converter accepts
 
 // The letters, cells and rackings of one row (one side of '/').
 struct Row {
@@ -240,9 +242,15 @@ class VermiculationParser {
   void read_course() {
     CourseLine line;
     at_ = 0;
+    unknown_letters_ = 0;
     while (true) {
       line.passes.push_back(read_pass());
       if (at_ == text_.size()) break;
+      if (line.passes.size() == most_passes) {
+        give_up(at_, "more than " + std::to_string(most_passes) +
+                         " passes in one line; write them on several lines");
+        break;
+      }
       ++at_;  // the '&'
     }
     for (const Pass& pass : line.passes) letters_ += pass.cells.size() + pass.rear.size() + pass.racks.size();
@@ -314,8 +322,7 @@ class VermiculationParser {
       } else if (name.empty()) {
         error(std::min(begin, end), "expected the name of a yarn before '+', ':', '<' or '>'");
       } else {
-        error(name_at, "no yarn is called " + quoted(name) + "; add a header ';;Yarn-" +
-                           (name.size() <= 20 ? std::string(name) : "A") + ": ...' or name another");
+        error(name_at, "no yarn is called " + quoted(name) + "; give it a Yarn- header or name another");
       }
       begin = stop + 1;
     }
@@ -374,6 +381,7 @@ class VermiculationParser {
       ++at_;
       if (c == 'R' || c == 'r') {
         read_racking(row, c, begin);
+        if (row.racks.size() > most_wales) return give_up(begin, "too many rackings in one pass");
         continue;
       }
       const std::size_t first_cell = row.cells.size(), first_rack = row.racks.size();
@@ -472,6 +480,8 @@ class VermiculationParser {
   }
 
   void unknown_letter(std::size_t index) {
+    if (++unknown_letters_ > most_unknown_letters)
+      return give_up(index, "too many unknown letters; the rest of the line is not read");
     // the bytes of one UTF-8 character go together, so that it is reported once
     while (at_ < text_.size() && (static_cast<unsigned char>(text_[at_]) & 0xc0) == 0x80) ++at_;
     const std::string_view letter = text_.substr(index, at_ - index);
@@ -514,6 +524,7 @@ class VermiculationParser {
   SourceLocation carriers_at_;
   std::vector<Bracket> open_brackets_;
   std::size_t letters_ = 0;
+  int unknown_letters_ = 0;  // of the line
 };
 
 }  // namespace

@@ -87,7 +87,7 @@ class KnitoutReader {
   void error(int column, std::string message) { say(Severity::error, column, std::move(message)); }
   void warning(int column, std::string message) { say(Severity::warning, column, std::move(message)); }
   void say(Severity severity, int column, std::string message) {
-    if (!source_mark_.empty()) message += " [source: " + std::string(source_mark_.substr(0, 200)) + "]";
+    if (!source_mark_.empty()) message += " [source: " + printable(source_mark_.substr(0, 200)) + "]";
     diagnostics_.add({severity, {line_, column}, std::move(message)});
   }
 

@@ -78,11 +78,10 @@ std::optional<int> parsed_integer(std::string_view text) {
   return value;
 }
 
-std::string quoted(std::string_view text) {
-  constexpr std::size_t most = 40;
+std::string printable(std::string_view text) {
   constexpr std::string_view hex = "0123456789abcdef";
-  std::string result = "'";
-  for (const char c : text.substr(0, most)) {
+  std::string result;
+  for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
     if (byte >= 32 && byte < 127) {
       result += c;
@@ -92,7 +91,12 @@ std::string quoted(std::string_view text) {
       result += hex[byte & 15];
     }
   }
-  return result + (text.size() > most ? "...'" : "'");
+  return result;
+}
+
+std::string quoted(std::string_view text) {
+  constexpr std::size_t most = 40;
+  return "'" + printable(text.substr(0, most)) + (text.size() > most ? "...'" : "'");
 }
 
 namespace {

@@ -57,7 +57,9 @@ std::optional<double> parsed_number(std::string_view text);
 /// A whole number with an optional sign; nothing if it does not fit into an int.
 std::optional<int> parsed_integer(std::string_view text);
 
-/// Text as it may stand in a message: in quotes, cut after 40 bytes, control and non-ASCII bytes as \xNN.
+/// Text as it may stand in a message: control and non-ASCII bytes as \xNN.
+std::string printable(std::string_view text);
+/// The same in quotes and cut after 40 bytes.
 std::string quoted(std::string_view text);
 
 /// What a quantity measures and, in brackets, the unit that `parsed_quantity` answers in.

@@ -25,9 +25,9 @@ Gaze gaze_of(View view) {
     case View::corner:
       break;
   }
-  const Vec3 backward = normalized({0.62, 0.5, 1});
+  const Vec3 backward = normalized({0.5, 0.42, 1});
   const Vec3 up{0, 1, 0};
-  return {backward, normalized(up - backward * dot(up, backward)), 24};
+  return {backward, normalized(up - backward * dot(up, backward)), 18};
 }
 
 Vec3 rotated(const Vec3& v, const Vec3& axis, double angle) {

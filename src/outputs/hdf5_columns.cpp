@@ -95,7 +95,8 @@ Quiet::~Quiet() {
 
 Writer::Writer() : file_(created(), H5Fclose, "HDF5 refuses a file in memory") {}
 
-void Writer::write(const std::string& name, hid_t type, const void* data, std::size_t count, int width, const char* unit) {
+void Writer::write(const std::string& name, hid_t type, const void* data, std::size_t count, int width,
+                   const char* unit) {
   const std::string group = name.substr(0, name.find('/'));
   const std::string failed = "HDF5 cannot store '" + name + "'";
   const auto untimed = [&](hid_t kind) {
@@ -117,11 +118,14 @@ void Writer::write(const std::string& name, hid_t type, const void* data, std::s
     H5Pset_shuffle(creation);
     H5Pset_deflate(creation, 4);
   }
-  const Handle dataset(H5Dcreate2(file_, name.c_str(), type, space, H5P_DEFAULT, creation, H5P_DEFAULT), H5Dclose, failed);
-  if (count > 0 && H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0) throw ContentError(failed);
+  const Handle dataset(H5Dcreate2(file_, name.c_str(), type, space, H5P_DEFAULT, creation, H5P_DEFAULT),
+                       H5Dclose, failed);
+  if (count > 0 && H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0)
+    throw ContentError(failed);
   if (unit != nullptr) {
     const Handle type_of_unit(text_type(), H5Tclose, failed), scalar(H5Screate(H5S_SCALAR), H5Sclose, failed);
-    const Handle attribute(H5Acreate2(dataset, "unit", type_of_unit, scalar, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, failed);
+    const Handle attribute(H5Acreate2(dataset, "unit", type_of_unit, scalar, H5P_DEFAULT, H5P_DEFAULT),
+                           H5Aclose, failed);
     if (H5Awrite(attribute, type_of_unit, &unit) < 0) throw ContentError(failed);
   }
 }
@@ -141,7 +145,8 @@ void Writer::column(const std::string& name, std::span<const std::uint8_t> value
 void Writer::texts(const std::string& name, const std::vector<std::string>& values) {
   std::vector<const char*> pointers;
   for (const std::string& text : values) {
-    if (text.find('\0') != std::string::npos) throw ContentError("a text in '" + name + "' contains a zero byte");
+    if (text.find('\0') != std::string::npos)
+      throw ContentError("a text in '" + name + "' contains a zero byte");
     pointers.push_back(text.c_str());
   }
   const Handle type(text_type(), H5Tclose, "HDF5 has no text type");
@@ -153,7 +158,8 @@ std::vector<char> Writer::bytes() {
   const ssize_t size = H5Fget_file_image(file_, nullptr, 0);
   if (size <= 0) throw ContentError("HDF5 cannot finish the file");
   std::vector<char> image(static_cast<std::size_t>(size));
-  if (H5Fget_file_image(file_, image.data(), image.size()) != size) throw ContentError("HDF5 cannot finish the file");
+  if (H5Fget_file_image(file_, image.data(), image.size()) != size)
+    throw ContentError("HDF5 cannot finish the file");
   return image;
 }
 

@@ -1,5 +1,5 @@
-// Named columns of numbers and texts in an HDF5 file that lies in memory. A thin layer over HDF5's C library: handles
-// are closed, errors are exceptions, nothing is printed.
+// Named columns of numbers and texts in an HDF5 file that lies in memory. A thin layer over HDF5's C library:
+// handles are closed, errors are exceptions, nothing is printed.
 #pragma once
 #include <hdf5.h>
 
@@ -34,8 +34,8 @@ class Handle {
   Close close_;
 };
 
-// HDF5 prints its error stack unless it is told not to; while one of these lives it does not. It also keeps other
-// threads out: Debian's serial library is not built for several at once.
+// HDF5 prints its error stack unless it is told not to; while one of these lives it does not. It also keeps
+// other threads out: Debian's serial library is not built for several at once.
 class Quiet {
  public:
   Quiet();
@@ -48,18 +48,21 @@ class Quiet {
   void* data_ = nullptr;
 };
 
-// Columns are addressed as "group/name". `width` numbers make a row, e.g. 3 for points. `unit` is kept as an attribute.
+// Columns are addressed as "group/name". `width` numbers make a row, e.g. 3 for points. `unit` is kept as an
+// attribute.
 class Writer {
  public:
   Writer();
-  void column(const std::string& name, std::span<const double> values, int width = 1, const char* unit = nullptr);
+  void column(const std::string& name, std::span<const double> values, int width = 1,
+              const char* unit = nullptr);
   void column(const std::string& name, std::span<const std::int32_t> values, int width = 1);
   void column(const std::string& name, std::span<const std::uint8_t> values);
   void texts(const std::string& name, const std::vector<std::string>& values);  // UTF-8, no zero bytes
-  std::vector<char> bytes();  // the finished file
+  std::vector<char> bytes();                                                    // the finished file
 
  private:
-  void write(const std::string& name, hid_t type, const void* data, std::size_t count, int width, const char* unit);
+  void write(const std::string& name, hid_t type, const void* data, std::size_t count, int width,
+             const char* unit);
   Quiet quiet_;
   std::map<std::string, bool> groups_;
   Handle file_;

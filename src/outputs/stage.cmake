@@ -8,5 +8,6 @@ find_package(nlohmann_json REQUIRED)
 pkg_check_modules(HDF5_SERIAL REQUIRED IMPORTED_TARGET hdf5-serial)
 # EGL gives headers only: libepoxy opens the library itself, so the program starts where there is none.
 target_include_directories(loopwright_outputs PRIVATE ${EGL_INCLUDE_DIRS})
-target_link_libraries(loopwright_outputs PUBLIC PkgConfig::EPOXY PRIVATE PkgConfig::HDF5_SERIAL PNG::PNG
-  nlohmann_json::nlohmann_json ${CMAKE_DL_LIBS})
+# Public where headers or tests of this stage name the library.
+target_link_libraries(loopwright_outputs PUBLIC PkgConfig::EPOXY PkgConfig::HDF5_SERIAL PNG::PNG
+  PRIVATE nlohmann_json::nlohmann_json ${CMAKE_DL_LIBS})

@@ -18,7 +18,8 @@ constexpr int version = 1;
 constexpr std::size_t block_size = 512;
 constexpr std::string_view magic = "Loopwright state ";
 
-// FNV-1a, 64 bits (Fowler, Noll, Vo). Each step is one to one, so that a change of a single byte always shows.
+// FNV-1a, 64 bits (Fowler, Noll, Vo). Each step is one to one, so that a change of a single byte always
+// shows.
 std::uint64_t checksum(std::span<const char> bytes) {
   std::uint64_t sum = 14695981039346656037ULL;
   for (const char c : bytes) sum = (sum ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
@@ -28,10 +29,11 @@ std::uint64_t checksum(std::span<const char> bytes) {
 // The user block that belongs to the given HDF5 bytes.
 std::array<char, block_size> user_block(std::span<const char> bytes) {
   std::array<char, block_size> block{};
-  std::snprintf(block.data(), block.size(),
-                "%s%d\nlength %zu\nchecksum fnv1a64 %016llx\nAn HDF5 file follows at byte 512. A state that was "
-                "changed by another program does not pass the checksum.\n",
-                magic.data(), version, bytes.size(), static_cast<unsigned long long>(checksum(bytes)));
+  std::snprintf(
+      block.data(), block.size(),
+      "%s%d\nlength %zu\nchecksum fnv1a64 %016llx\nAn HDF5 file follows at byte 512. A state that was "
+      "changed by another program does not pass the checksum.\n",
+      magic.data(), version, bytes.size(), static_cast<unsigned long long>(checksum(bytes)));
   return block;
 }
 
@@ -57,10 +59,11 @@ std::vector<char> file_bytes(const std::filesystem::path& path) {
 void check_block(const std::filesystem::path& path, const std::vector<char>& bytes) {
   const std::string_view start(bytes.data(), std::min(bytes.size(), block_size));
   if (!start.starts_with(magic)) fail(path, "it is not a Loopwright state");
-  const std::string_view number = start.substr(magic.size(), start.find('\n') - std::min(start.find('\n'), magic.size()));
+  const std::string_view number =
+      start.substr(magic.size(), start.find('\n') - std::min(start.find('\n'), magic.size()));
   if (number != std::to_string(version))
-    fail(path, "it is damaged, or of format version " + std::string(number.substr(0, 8)) + "; this program reads version " +
-                   std::to_string(version));
+    fail(path, "it is damaged, or of format version " + std::string(number.substr(0, 8)) +
+                   "; this program reads version " + std::to_string(version));
   if (bytes.size() < block_size) fail(path, "it is cut short");
   const std::span<const char> content(bytes.data() + block_size, bytes.size() - block_size);
   const auto block = user_block(content);
@@ -104,11 +107,14 @@ void put_yarns(hdf5::Writer& out, const std::vector<FabricYarn>& yarns) {
   out.column("yarns/carrier", gathered<std::int32_t>(yarns, [](const Y& y) { return y.carrier.value; }));
   out.texts("yarns/colour", gathered<std::string>(yarns, [](const Y& y) { return y.colour; }));
   out.column("yarns/diameter", gathered<double>(yarns, [](const Y& y) { return y.diameter; }), 1, "d");
-  out.column("yarns/linear_density", gathered<double>(yarns, [](const Y& y) { return y.linear_density_tex; }), 1, "tex");
-  out.column("yarns/segment_rest_length", gathered<double>(yarns, [](const Y& y) { return y.segment_rest_length; }), 1, "d");
+  out.column("yarns/linear_density", gathered<double>(yarns, [](const Y& y) { return y.linear_density_tex; }),
+             1, "tex");
+  out.column("yarns/segment_rest_length",
+             gathered<double>(yarns, [](const Y& y) { return y.segment_rest_length; }), 1, "d");
   out.column("yarns/periodic", gathered<std::uint8_t>(yarns, [](const Y& y) { return y.periodic ? 1 : 0; }));
   out.column("yarns/shift", shifts(yarns), 2);
-  out.column("yarns/control_points", gathered<std::int32_t>(yarns, [](const Y& y) { return y.control_points.size(); }));
+  out.column("yarns/control_points",
+             gathered<std::int32_t>(yarns, [](const Y& y) { return y.control_points.size(); }));
   std::vector<double> places;
   std::vector<std::uint8_t> held;
   for (const Y& yarn : yarns) {
@@ -129,9 +135,12 @@ void put_loops(hdf5::Writer& out, const Fabric& fabric) {
   out.column("loops/end", gathered<double>(loops, [](const L& l) { return l.end; }));
   out.column("loops/line", gathered<std::int32_t>(loops, [](const L& l) { return l.at.line; }));
   out.column("loops/text_column", gathered<std::int32_t>(loops, [](const L& l) { return l.at.column; }));
-  out.column("loops/kind", gathered<std::int32_t>(loops, [](const L& l) { return static_cast<int>(l.kind); }));
-  out.column("loops/side", gathered<std::int32_t>(loops, [](const L& l) { return static_cast<int>(l.side); }));
-  out.column("loops/direction", gathered<std::int32_t>(loops, [](const L& l) { return static_cast<int>(l.direction); }));
+  out.column("loops/kind",
+             gathered<std::int32_t>(loops, [](const L& l) { return static_cast<int>(l.kind); }));
+  out.column("loops/side",
+             gathered<std::int32_t>(loops, [](const L& l) { return static_cast<int>(l.side); }));
+  out.column("loops/direction",
+             gathered<std::int32_t>(loops, [](const L& l) { return static_cast<int>(l.direction); }));
   using I = PlacedInterlacing;
   const auto& pairs = fabric.interlacings;
   out.column("interlacings/parent", gathered<std::int32_t>(pairs, [](const I& i) { return i.parent.value; }));

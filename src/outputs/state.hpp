@@ -1,4 +1,5 @@
-// Saved state: a fabric and what is known of the run that made it, in one HDF5 file that can be read back to the bit.
+// Saved state: a fabric and what is known of the run that made it, in one HDF5 file that can be read back to
+// the bit.
 #pragma once
 #include <filesystem>
 #include <map>
@@ -14,17 +15,17 @@ struct State {
   std::map<std::string, std::string> texts;  // e.g. "source": the notation; UTF-8 without zero bytes
 };
 
-// The file is a user block of 512 bytes (format, version, length and checksum of the rest, as text) and an HDF5 file
-// with the groups fabric, yarns, control_points, loops, interlacings and run; docs/outputs.md names the columns.
-// Numbers are compressed (shuffle, deflate). The same state gives the same bytes.
-// Throws FileError, and std::invalid_argument for a fabric that could not be read back (see fabric_fault).
+// The file is a user block of 512 bytes (format, version, length and checksum of the rest, as text) and an
+// HDF5 file with the groups fabric, yarns, control_points, loops, interlacings and run; docs/outputs.md names
+// the columns. Numbers are compressed (shuffle, deflate). The same state gives the same bytes. Throws
+// FileError, and std::invalid_argument for a fabric that could not be read back (see fabric_fault).
 void write_state(const std::filesystem::path& path, const State& state);
 
 // Checks length and checksum before HDF5 sees a byte, then every size, range and number. Throws FileError.
 State read_state(const std::filesystem::path& path);
 
-// What makes a fabric unfit to be saved or drawn (sizes that disagree, numbers out of range or not finite), in words;
-// empty if it is sound.
+// What makes a fabric unfit to be saved or drawn (sizes that disagree, numbers out of range or not finite),
+// in words; empty if it is sound.
 std::string fabric_fault(const Fabric& fabric);
 
 }  // namespace loopwright

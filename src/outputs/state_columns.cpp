@@ -13,7 +13,8 @@ using hdf5::Reader;
 
 template <class... Columns>
 void require_rows(const std::string& group, std::size_t rows, const Columns&... columns) {
-  if (((columns.size() != rows) || ...)) throw ContentError("the columns of '" + group + "' differ in length");
+  if (((columns.size() != rows) || ...))
+    throw ContentError("the columns of '" + group + "' differ in length");
 }
 
 template <class T>
@@ -87,7 +88,8 @@ void read_yarns(const Reader& in, std::vector<FabricYarn>& yarns) {
 
 void read_loops(const Reader& in, Fabric& fabric) {
   const auto ids = in.integers("loops/loop"), yarns = in.integers("loops/yarn");
-  const auto begins = in.doubles("loops/begin"), apexes = in.doubles("loops/apex"), ends = in.doubles("loops/end");
+  const auto begins = in.doubles("loops/begin"), apexes = in.doubles("loops/apex"),
+             ends = in.doubles("loops/end");
   const auto lines = in.integers("loops/line"), columns = in.integers("loops/text_column");
   const auto kinds = in.integers("loops/kind"), sides = in.integers("loops/side");
   const auto directions = in.integers("loops/direction");
@@ -118,12 +120,15 @@ std::string yarn_fault(const FabricYarn& yarn, bool fabric_is_periodic) {
   if (!(yarn.diameter > 0) || !std::isfinite(yarn.diameter)) return "its diameter is not a positive number";
   if (!(yarn.segment_rest_length > 0) || !std::isfinite(yarn.segment_rest_length))
     return "its segments' rest length is not a positive number";
-  if (!(yarn.linear_density_tex >= 0) || !std::isfinite(yarn.linear_density_tex)) return "its linear density is negative";
+  if (!(yarn.linear_density_tex >= 0) || !std::isfinite(yarn.linear_density_tex))
+    return "its linear density is negative";
   if (yarn.periodic && !fabric_is_periodic && yarn.shift != std::array<int, 2>{0, 0})
     return "it repeats with a lattice that the fabric does not have";
   if (yarn.segments() < 1) return "it has too few control points";
-  if (yarn.held.size() != yarn.control_points.size()) return "its held marks and control points differ in number";
-  if (std::any_of(yarn.held.begin(), yarn.held.end(), [](std::uint8_t h) { return h > 1; })) return "a held mark is neither 0 nor 1";
+  if (yarn.held.size() != yarn.control_points.size())
+    return "its held marks and control points differ in number";
+  if (std::any_of(yarn.held.begin(), yarn.held.end(), [](std::uint8_t h) { return h > 1; }))
+    return "a held mark is neither 0 nor 1";
   if (!std::all_of(yarn.control_points.begin(), yarn.control_points.end(), is_finite))
     return "it has coordinates that are not finite numbers";
   return {};
@@ -149,18 +154,22 @@ State state_from_columns(const Reader& in) {
 }
 
 std::string fabric_fault(const Fabric& fabric) {
-  for (const double v : {fabric.diameter_mm, fabric.width, fabric.height, fabric.skew, fabric.wales, fabric.courses})
+  for (const double v :
+       {fabric.diameter_mm, fabric.width, fabric.height, fabric.skew, fabric.wales, fabric.courses})
     if (!std::isfinite(v)) return "a size of the fabric is not a finite number";
   if (!(fabric.diameter_mm > 0)) return "the yarn diameter is not positive";
-  if (fabric.periodic && !(fabric.width > 0 && fabric.height > 0)) return "the periodic cell has no width or height";
+  if (fabric.periodic && !(fabric.width > 0 && fabric.height > 0))
+    return "the periodic cell has no width or height";
   for (std::size_t y = 0; y < fabric.yarns.size(); ++y)
     if (const std::string fault = yarn_fault(fabric.yarns[y], fabric.periodic); !fault.empty())
       return "yarn " + std::to_string(y) + ": " + fault;
   for (std::size_t k = 0; k < fabric.loops.size(); ++k) {
     const LoopSpan& loop = fabric.loops[k];
     const std::string which = "loop " + std::to_string(k) + ": ";
-    if (loop.yarn < 0 || static_cast<std::size_t>(loop.yarn) >= fabric.yarns.size()) return which + "its yarn does not exist";
-    if (!std::isfinite(loop.begin) || !std::isfinite(loop.apex) || !std::isfinite(loop.end) || loop.begin > loop.end)
+    if (loop.yarn < 0 || static_cast<std::size_t>(loop.yarn) >= fabric.yarns.size())
+      return which + "its yarn does not exist";
+    if (!std::isfinite(loop.begin) || !std::isfinite(loop.apex) || !std::isfinite(loop.end) ||
+        loop.begin > loop.end)
       return which + "its place on the yarn is not a stretch of it";
   }
   for (const PlacedInterlacing& pair : fabric.interlacings)

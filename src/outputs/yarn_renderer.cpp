@@ -76,6 +76,7 @@ YarnRenderer::YarnRenderer() {
                              std::to_string(epoxy_gl_version() / 10) + "." +
                              std::to_string(epoxy_gl_version() % 10));
   yarn_program_ = linked(shaders::yarn_vertex, shaders::yarn_fragment);
+  hair_program_ = linked(shaders::yarn_vertex, shaders::hair_fragment);
   depth_program_ = linked(shaders::depth_vertex, shaders::depth_fragment);
   table_program_ = linked(shaders::table_vertex, shaders::table_fragment);
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest_texture_);
@@ -83,6 +84,7 @@ YarnRenderer::YarnRenderer() {
   glGenVertexArrays(1, &empty_vertex_array_);
   glGenBuffers(1, &vertices_);
   glGenBuffers(1, &indices_);
+  glGenBuffers(1, &hair_indices_);
   glGenBuffers(1, &offsets_);
   glGenFramebuffers(1, &shadow_framebuffer_);
   glGenTextures(1, &shadow_texture_);
@@ -106,28 +108,33 @@ YarnRenderer::~YarnRenderer() {
   glDeleteTextures(1, &shadow_texture_);
   glDeleteFramebuffers(1, &shadow_framebuffer_);
   glDeleteBuffers(1, &offsets_);
+  glDeleteBuffers(1, &hair_indices_);
   glDeleteBuffers(1, &indices_);
   glDeleteBuffers(1, &vertices_);
   glDeleteVertexArrays(1, &empty_vertex_array_);
   glDeleteVertexArrays(1, &vertex_array_);
   glDeleteProgram(table_program_);
   glDeleteProgram(depth_program_);
+  glDeleteProgram(hair_program_);
   glDeleteProgram(yarn_program_);
 }
 
 void YarnRenderer::upload(const YarnScene& scene) {
   const auto fill = [](GLenum target, GLuint buffer, const auto& list) {
     glBindBuffer(target, buffer);
-    glBufferData(target, static_cast<GLsizeiptr>(list.size() * sizeof(list[0])), list.data(), GL_STATIC_DRAW);
+    glBufferData(target, static_cast<GLsizeiptr>(list.size() * sizeof(*list.data())), list.data(),
+                 GL_STATIC_DRAW);
   };
   glBindVertexArray(vertex_array_);
   fill(GL_ARRAY_BUFFER, vertices_, scene.vertices);
   fill(GL_ARRAY_BUFFER, offsets_, scene.offsets);
+  fill(GL_ELEMENT_ARRAY_BUFFER, hair_indices_, scene.hair_indices);
   fill(GL_ELEMENT_ARRAY_BUFFER, indices_, scene.indices);
   glBindVertexArray(0);
   if (glGetError() == GL_OUT_OF_MEMORY)
     throw std::runtime_error("the scene does not fit into graphics memory");
   index_count_ = static_cast<int>(scene.indices.size());
+  hair_index_count_ = static_cast<int>(scene.hair_indices.size());
   copies_ = static_cast<int>(scene.offsets.size());
   centre_ = scene.centre;
   bounds_ = {scene.bounds.lower - scene.centre, scene.bounds.upper - scene.centre};
@@ -190,6 +197,20 @@ void YarnRenderer::draw_yarns() {
   glBindVertexArray(0);
 }
 
+// Hairs are mixed over what is drawn. They do not hide each other, so their order hardly shows.
+void YarnRenderer::draw_hairs() {
+  glEnable(GL_BLEND);
+  glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  glDepthMask(GL_FALSE);
+  glBindVertexArray(vertex_array_);
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, hair_indices_);
+  glDrawElementsInstanced(GL_LINES, hair_index_count_, GL_UNSIGNED_INT, nullptr, copies_);
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_);
+  glBindVertexArray(0);
+  glDepthMask(GL_TRUE);
+  glDisable(GL_BLEND);
+}
+
 // A plane under the cloth, where the camera looks across it. It has the colour of the background, so only the
 // shadow shows.
 void YarnRenderer::draw_table(const Camera& camera, const DrawStyle& style, const Light& light,
@@ -204,8 +225,8 @@ void YarnRenderer::draw_table(const Camera& camera, const DrawStyle& style, cons
       Vec3{middle.x, middle.y, facing > 0 ? bounds_.lower.z - 0.4 : bounds_.upper.z + 0.4});
   set(table_program_, "side", Vec3{(facing > 0 ? 1 : -1) * (size.x + 8), 0, 0});
   set(table_program_, "rise", Vec3{0, size.y + 8, 0});
-  const double blur = 0.35 * light.texels_per_diameter / light.size;
-  glUniform2f(place(table_program_, "shadow_blur"), static_cast<float>(blur), static_cast<float>(blur));
+  const double blur = 1.1 * light.texels_per_diameter / light.size;
+  set(table_program_, "shadow_blur", static_cast<float>(blur));
   glUniform3f(place(table_program_, "background"), static_cast<float>(style.background[0]) / 255.0F,
               static_cast<float>(style.background[1]) / 255.0F,
               static_cast<float>(style.background[2]) / 255.0F);
@@ -215,6 +236,25 @@ void YarnRenderer::draw_table(const Camera& camera, const DrawStyle& style, cons
   glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
   glBindVertexArray(0);
   glEnable(GL_CULL_FACE);
+}
+
+// Makes a program current and sets what yarn and hair have in common.
+void YarnRenderer::set_view(unsigned program, const Camera& camera, const Light& light,
+                            const Matrix4& view_projection, bool shadows) const {
+  glUseProgram(program);
+  set(program, "view_projection", view_projection);
+  set(program, "shadow_matrix", light.matrix);
+  set(program, "shadow_offset", static_cast<float>(0.03 + 1.2 / light.texels_per_diameter));
+  set(program, "shadow_strength", shadows ? 1.0F : 0.0F);
+  const double blur = std::max(0.11 * light.texels_per_diameter, 1.0) / light.size;
+  set(program, "shadow_blur", static_cast<float>(blur));
+  set(program, "to_light", light.direction);
+  set(program, "to_sky", normalized(camera.up + camera.backward * 0.6));
+  set(program, "to_eye", camera.backward);
+  const bool perspective = camera.field_of_view_deg > 0;
+  set(program, "perspective", perspective ? 1.0F : 0.0F);
+  set(program, "eye", perspective ? camera.target + camera.backward * camera.eye_distance() : Vec3{});
+  glUniform1i(place(program, "shadow_map"), 0);
 }
 
 void YarnRenderer::draw(const Camera& camera, const DrawStyle& style, int width, int height) {
@@ -242,25 +282,16 @@ void YarnRenderer::draw(const Camera& camera, const DrawStyle& style, int width,
                static_cast<float>(style.background[2]) / 255.0F, style.transparent ? 0.0F : 1.0F);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   if (index_count_ > 0) {
-    glUseProgram(yarn_program_);
-    set(yarn_program_, "view_projection", view_projection);
-    set(yarn_program_, "shadow_matrix", light.matrix);
-    set(yarn_program_, "shadow_offset", static_cast<float>(0.03 + 1.2 / light.texels_per_diameter));
-    set(yarn_program_, "shadow_strength", shadows ? 1.0F : 0.0F);
-    const double blur = std::max(0.11 * light.texels_per_diameter, 1.0) / light.size;
-    glUniform2f(place(yarn_program_, "shadow_blur"), static_cast<float>(blur), static_cast<float>(blur));
-    set(yarn_program_, "to_light", light.direction);
-    set(yarn_program_, "to_sky", normalized(local.up + local.backward * 0.6));
-    set(yarn_program_, "to_eye", local.backward);
-    const bool perspective = local.field_of_view_deg > 0;
-    set(yarn_program_, "perspective", perspective ? 1.0F : 0.0F);
-    set(yarn_program_, "eye", perspective ? local.target + local.backward * local.eye_distance() : Vec3{});
+    glBindTexture(GL_TEXTURE_2D, shadow_texture_);
+    set_view(yarn_program_, local, light, view_projection, shadows);
     set(yarn_program_, "plies", static_cast<float>(look_.plies));
     set(yarn_program_, "twist", static_cast<float>(look_.twist));
-    glUniform1i(place(yarn_program_, "shadow_map"), 0);
-    glBindTexture(GL_TEXTURE_2D, shadow_texture_);
     draw_yarns();
     if (shadows && style.table && !style.transparent) draw_table(local, style, light, view_projection);
+    if (hair_index_count_ > 0) {
+      set_view(hair_program_, local, light, view_projection, shadows);
+      draw_hairs();
+    }
   }
   glBindTexture(GL_TEXTURE_2D, 0);
   glUseProgram(0);

@@ -40,12 +40,16 @@ class YarnRenderer {
   void draw_table(const Camera& camera, const DrawStyle& style, const Light& light,
                   const Matrix4& view_projection);
   void draw_yarns();
+  void draw_hairs();
+  void set_view(unsigned program, const Camera& camera, const Light& light, const Matrix4& view_projection,
+                bool shadows) const;
 
-  unsigned yarn_program_ = 0, depth_program_ = 0, table_program_ = 0;
-  unsigned vertex_array_ = 0, empty_vertex_array_ = 0, vertices_ = 0, indices_ = 0, offsets_ = 0;
+  unsigned yarn_program_ = 0, hair_program_ = 0, depth_program_ = 0, table_program_ = 0;
+  unsigned vertex_array_ = 0, empty_vertex_array_ = 0, vertices_ = 0, indices_ = 0, hair_indices_ = 0,
+           offsets_ = 0;
   unsigned shadow_framebuffer_ = 0, shadow_texture_ = 0;
   int shadow_size_ = 0, largest_texture_ = 2048;
-  int index_count_ = 0, copies_ = 0;
+  int index_count_ = 0, hair_index_count_ = 0, copies_ = 0;
   Vec3 centre_;
   Bounds bounds_;
   YarnLook look_;

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "base/parallel.hpp"
+#include "outputs/fuzz.hpp"
 #include "outputs/sky.hpp"
 #include "outputs/tube_mesh.hpp"
 
@@ -45,17 +47,26 @@ std::array<std::int8_t, 4> packed(const Vec3& v) {
   return {byte(v.x), byte(v.y), byte(v.z), 0};
 }
 
+std::array<float, 3> as_floats(const Vec3& v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+
 // Adds tubes to the scene. Long yarns are cut where the pattern of plies repeats, so that the arc length
 // stays small enough for a float.
 class TubeBuilder {
  public:
-  TubeBuilder(YarnScene& scene, const Sky& sky) : scene_(scene), sky_(sky) {}
+  TubeBuilder(YarnScene& scene, double pixels_per_diameter)
+      : scene_(scene), pixels_per_diameter_(pixels_per_diameter) {}
 
-  void add(const Fabric& fabric, std::size_t y, Detail detail) {
+  void add(const Fabric& fabric, std::size_t y) {
     const FabricYarn& yarn = fabric.yarns[y];
+    const Detail detail = detail_for(yarn, pixels_per_diameter_);
     const std::vector<TubeRing> rings = tube_rings(fabric, yarn, detail.per_segment);
     sides_ = detail.sides;
-    radius_ = yarn.diameter / 2;
+    // the polygon's perimeter is that of the circle, so that seen from all sides it is as wide on average
+    // (Cauchy)
+    const double half_step = std::numbers::pi / sides_;
+    radius_ = yarn.diameter / 2 * half_step / std::sin(half_step);
     const auto rgb = drawn_colour(fabric, y);
     colour_ = {rgb[0], rgb[1], rgb[2], 255};
     const double length = rings.back().arc;
@@ -64,29 +75,31 @@ class TubeBuilder {
     const double whole = std::max(1.0, std::round(length / pitch)) * pitch;
     const double stretch = yarn.periodic && length > 0 ? whole / length : 1;
     repeat_ = yarn.periodic ? whole : 256 * pitch;
-    const bool ring_closed = yarn.periodic && yarn.shift == std::array<int, 2>{0, 0};
 
     double start = 0;
+    first_vertex_.clear();
     for (std::size_t k = 0; k < rings.size(); ++k) {
-      double arc = rings[k].arc * stretch - start;
+      const double arc = rings[k].arc * stretch - start;
       add_ring(rings[k], arc);
       if (k > 0) join_last_rings();
       if (!yarn.periodic && arc > repeat_ && k + 1 < rings.size()) {
         start += repeat_;
         add_ring(rings[k], arc - repeat_);
       }
+      first_vertex_.push_back(scene_.vertices.size() - static_cast<std::size_t>(sides_ + 1));
     }
-    if (!ring_closed) {
+    if (!(yarn.periodic && yarn.shift == std::array<int, 2>{0, 0})) {
       add_cap(rings.front(), -rings.front().tangent);
       add_cap(rings.back(), rings.back().tangent);
     }
+    const double thickness = yarn.diameter * pixels_per_diameter_;
+    if (scene_.look.fuzz > 0 && thickness >= 14) add_hairs(rings, y, std::min(1.0, thickness / 28));
   }
 
  private:
   SceneVertex vertex(const TubeRing& ring, const Vec3& out, double turns, double arc) const {
-    const Vec3 p = ring.centre + out * radius_ - scene_.centre;
     SceneVertex v;
-    v.position = {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+    v.position = as_floats(ring.centre + out * radius_ - scene_.centre);
     v.along = {static_cast<float>(turns), static_cast<float>(arc), static_cast<float>(repeat_)};
     v.normal = packed(out);
     v.tangent = packed(ring.tangent);
@@ -96,18 +109,10 @@ class TubeBuilder {
 
   // sides + 1 vertices: the last has the place of the first and the angle of a full turn
   void add_ring(const TubeRing& ring, double arc) {
-    if (scene_.look.occlusion) sky_.gather(ring.centre, near_);
-    const auto first = scene_.vertices.size();
     for (int s = 0; s <= sides_; ++s) {
       const double turns = static_cast<double>(s) / sides_, angle = 2 * std::numbers::pi * turns;
-      const Vec3 out = ring.normal * std::cos(angle) + ring.binormal * std::sin(angle);
-      SceneVertex v = vertex(ring, out, turns, arc);
-      if (s == sides_)
-        v.colour[3] = scene_.vertices[first].colour[3];
-      else if (scene_.look.occlusion)
-        v.colour[3] = static_cast<std::uint8_t>(
-            std::lround(255 * Sky::open_share(ring.centre + out * radius_, out, near_)));
-      scene_.vertices.push_back(v);
+      scene_.vertices.push_back(
+          vertex(ring, ring.normal * std::cos(angle) + ring.binormal * std::sin(angle), turns, arc));
     }
   }
 
@@ -133,13 +138,55 @@ class TubeBuilder {
                             {base, base + s + (at_end ? 0 : 1), base + s + (at_end ? 1 : 0)});
   }
 
+  void add_hairs(const std::vector<TubeRing>& rings, std::size_t y, double share) {
+    const auto seed = static_cast<std::uint32_t>(y);
+    for (const Hair& hair : loose_fibres(rings, radius_, sides_, 28 * share * scene_.look.fuzz, seed)) {
+      for (int i = 0; i < Hair::point_count; ++i) {
+        // its root's vertex gives colour, normal and tangent
+        SceneVertex v = scene_.vertices[first_vertex_[hair.ring] + static_cast<std::size_t>(hair.side)];
+        v.position = as_floats(hair.points[static_cast<std::size_t>(i)] - scene_.centre);
+        v.along = {static_cast<float>(i) / (Hair::point_count - 1), 0, 1};
+        if (i > 0) {
+          const auto here = static_cast<std::uint32_t>(scene_.vertices.size());
+          scene_.hair_indices.insert(scene_.hair_indices.end(), {here - 1, here});
+        }
+        scene_.vertices.push_back(v);
+      }
+    }
+  }
+
   YarnScene& scene_;
-  const Sky& sky_;
-  std::vector<SkySample> near_;
+  double pixels_per_diameter_;
+  std::vector<std::size_t> first_vertex_;  // of each ring
   std::array<std::uint8_t, 4> colour_{};
   int sides_ = 0;
   double radius_ = 0, repeat_ = 0;
 };
+
+// Sets every vertex' open share of the sky. Vertices of a ring lie together, so the search is shared by a few
+// of them.
+void shade_crevices(const Fabric& fabric, YarnScene& scene) {
+  const Sky sky(fabric);
+  constexpr std::size_t per_chunk = 8192;
+  const auto chunks = static_cast<int>((scene.vertices.size() + per_chunk - 1) / per_chunk);
+  parallel_chunks(chunks, [&](int chunk) {
+    std::vector<SkySample> near;
+    Vec3 searched;
+    bool fresh = true;
+    const std::size_t begin = static_cast<std::size_t>(chunk) * per_chunk;
+    for (std::size_t k = begin; k < std::min(begin + per_chunk, scene.vertices.size()); ++k) {
+      SceneVertex& v = scene.vertices[k];
+      const Vec3 p = Vec3{v.position[0], v.position[1], v.position[2]} + scene.centre;
+      const Vec3 normal = Vec3{1.0 * v.normal[0], 1.0 * v.normal[1], 1.0 * v.normal[2]} / 127;
+      if (fresh || squared_norm(p - searched) > 0.04) {
+        sky.gather(p, near);
+        searched = p;
+        fresh = false;
+      }
+      v.colour[3] = static_cast<std::uint8_t>(std::lround(255 * Sky::open_share(p, normal, near)));
+    }
+  });
+}
 
 }  // namespace
 
@@ -189,10 +236,9 @@ YarnScene yarn_scene(const Fabric& fabric, const SceneOptions& options) {
       const Vec3 o = fabric.lattice(m, n);
       scene.offsets.push_back({static_cast<float>(o.x), static_cast<float>(o.y), static_cast<float>(o.z)});
     }
-  const Sky sky = options.look.occlusion ? Sky(fabric) : Sky();
-  TubeBuilder builder(scene, sky);
-  for (std::size_t y = 0; y < fabric.yarns.size(); ++y)
-    builder.add(fabric, y, detail_for(fabric.yarns[y], options.pixels_per_diameter));
+  TubeBuilder builder(scene, options.pixels_per_diameter);
+  for (std::size_t y = 0; y < fabric.yarns.size(); ++y) builder.add(fabric, y);
+  if (options.look.occlusion) shade_crevices(fabric, scene);
   return scene;
 }
 

@@ -14,7 +14,9 @@ namespace loopwright {
 // How a yarn is made up, for drawing only.
 struct YarnLook {
   int plies = 2;
-  double twist = 0.34;    // turns of the plies per d; 2/d is hard, 0.2/d soft. Positive: Z twist
+  double twist = 0.34;  // turns of the plies per d; 2/d is hard, 0.2/d soft. Positive: Z twist
+  double fuzz =
+      1;  // loose fibres, as a share of the usual number; drawn where a yarn is 14 pixels thick or more
   bool occlusion = true;  // darken where other yarn hides the sky; off, for speed, while the picture moves
 };
 
@@ -31,16 +33,18 @@ struct SceneVertex {
 struct YarnScene {
   std::vector<SceneVertex> vertices;
   std::vector<std::uint32_t> indices;  // triangles, counter-clockwise from outside
-  std::vector<std::array<float, 3>>
-      offsets;    // the scene is drawn once at each: (0, 0, 0), or the periodic repeats
+  // pairs of vertices, a line each; along[0] runs from 0 at a hair's root to 1 at its tip
+  std::vector<std::uint32_t> hair_indices;
+  // the scene is drawn once at each of these: (0, 0, 0), or the periodic repeats
+  std::vector<std::array<float, 3>> offsets;
   Vec3 centre;    // of the scene, in the fabric's coordinates
   Bounds bounds;  // of all that is drawn, in the fabric's coordinates
   YarnLook look;
 };
 
 struct SceneOptions {
-  std::array<int, 2> repeats{
-      0, 0};  // periodic fabrics: cells along each lattice vector; 0: enough for 6 wales, 6 courses
+  // periodic fabrics: cells along each lattice vector; 0: enough for 6 wales, 6 courses
+  std::array<int, 2> repeats{0, 0};
   double pixels_per_diameter = 24;  // size on the screen for which the mesh is fine enough
   YarnLook look;
 };

@@ -39,7 +39,7 @@ in vec3 yarn_place;
 in vec4 yarn_colour;
 uniform sampler2DShadow shadow_map;
 uniform float shadow_strength;
-uniform vec2 shadow_blur;       // radius of the soft edge, in texture coordinates
+uniform float shadow_blur;      // radius of the soft edge, in texture coordinates
 uniform vec3 to_light, to_sky, to_eye, eye;   // unit vectors; eye: a perspective camera's place
 uniform float perspective;
 uniform float plies, twist;
@@ -88,13 +88,13 @@ void main() {
 
   // Fibres lie along the yarn (the twist of the plies undoes that of the single): streaks that are long and thin.
   float cells = plies * abs(twist) * 4.0;
-  vec2 period = vec2(36.0, floor(yarn_place.z * cells + 0.5));
-  vec2 place = vec2(yarn_place.x * 36.0, yarn_place.y * cells);
-  float fibre = noise(place, period) + 0.6 * noise(place * vec2(2.0, 2.0) + vec2(0.0, 0.5), period * 2.0);
+  vec2 period = vec2(44.0, floor(yarn_place.z * cells + 0.5));
+  vec2 place = vec2(yarn_place.x * 44.0, yarn_place.y * cells);
+  float fibre = noise(place, period) + 0.9 * noise(place * vec2(3.0, 2.0), period * vec2(3.0, 2.0));
   float fibre_detail = (1.0 - smoothstep(0.25, 0.8, fwidth(yarn_place.y) * cells)) * detail;
 
   vec3 shape = normalize(n + across * (0.62 * lean * detail) + b * (0.28 * fibre * fibre_detail));
-  float open = yarn_colour.a * mix(0.9, 1.0 - 0.42 * groove, detail);
+  float open = yarn_colour.a * mix(0.9, 1.0 - 0.36 * groove, detail);
 
   vec3 view = perspective > 0.5 ? normalize(eye - world) : to_eye;
   float key = max((dot(shape, to_light) + 0.18) / 1.18, 0.0) * lit();
@@ -106,13 +106,34 @@ void main() {
   float sheen = pow(max(1.0 - along_half * along_half, 0.0), 24.0) * key;
 
   vec3 albedo = pow(yarn_colour.rgb, vec3(2.2)) * (1.0 + 0.3 * fibre * fibre_detail);
-  vec3 light = vec3(1.0, 0.97, 0.92) * key * 0.92 * mix(1.0, open, 0.45)
+  vec3 light = vec3(1.0, 0.97, 0.92) * key * 0.92 * mix(1.0, open, 0.6)
              + mix(vec3(0.30, 0.27, 0.25), vec3(0.50, 0.54, 0.60), sky) * open
              + vec3(0.14) * fill * open;
   // light that went through neighbouring yarn takes its colour: deep places are saturated, not grey
   vec3 through = albedo * (1.0 - open) * 0.16;
   vec3 colour = albedo * (light + through) + vec3(0.035) * sheen * open + albedo * rim * 0.18 * open;
   result = vec4(pow(colour, vec3(1.0 / 2.2)), 1.0);
+}
+)";
+
+// A loose fibre, lit by the light that reaches the surface that it grows from.
+inline constexpr const char* hair_fragment = R"(#version 330 core
+in vec3 shadow_place;
+in vec3 surface_normal;
+in vec3 yarn_place;
+in vec4 yarn_colour;
+uniform sampler2DShadow shadow_map;
+uniform float shadow_strength;
+uniform vec3 to_light, to_sky;
+out vec4 result;
+void main() {
+  vec3 n = normalize(surface_normal);
+  float lit = shadow_strength > 0.0 ? texture(shadow_map, shadow_place) : 1.0;
+  // a fibre lets light through, so the side that faces away is not dark
+  float key = (0.45 + 0.55 * max(dot(n, to_light), 0.0)) * lit;
+  vec3 light = vec3(0.95) * key + mix(0.30, 0.52, 0.5 + 0.5 * dot(n, to_sky)) * yarn_colour.a;
+  vec3 colour = pow(yarn_colour.rgb, vec3(2.2)) * light * 1.08;
+  result = vec4(pow(colour, vec3(1.0 / 2.2)), 0.5 * (1.0 - 0.8 * yarn_place.x));
 }
 )";
 
@@ -144,16 +165,18 @@ void main() {
 inline constexpr const char* table_fragment = R"(#version 330 core
 in vec3 shadow_place;
 uniform sampler2DShadow shadow_map;
-uniform vec2 shadow_blur;
+uniform float shadow_blur;
 uniform vec3 background;
 out vec4 result;
 void main() {
-  float sum = 0.0;
-  for (int y = -3; y <= 3; ++y)
-    for (int x = -3; x <= 3; ++x)
-      sum += texture(shadow_map, vec3(shadow_place.xy + vec2(x, y) * shadow_blur * 0.9, min(shadow_place.z, 0.9999)));
+  // a spiral of taps, turned differently at each pixel: what is left of the pattern is a fine grain
+  float sum = 0.0, turn = 6.2832 * fract(52.98292 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
+  for (int k = 0; k < 32; ++k) {
+    float angle = 2.399963 * float(k) + turn, radius = sqrt((float(k) + 0.5) / 32.0) * shadow_blur;
+    sum += texture(shadow_map, vec3(shadow_place.xy + radius * vec2(cos(angle), sin(angle)), min(shadow_place.z, 0.9999)));
+  }
   vec2 inside = step(vec2(0.0), shadow_place.xy) * step(shadow_place.xy, vec2(1.0));
-  float shade = (1.0 - sum / 49.0) * inside.x * inside.y;
+  float shade = (1.0 - sum / 32.0) * inside.x * inside.y;
   result = vec4(background * (1.0 - 0.32 * shade), 1.0);
 }
 )";

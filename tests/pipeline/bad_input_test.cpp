@@ -85,7 +85,7 @@ INSTANTIATE_TEST_SUITE_P(
                  ";!knitout-2\n;;Carriers: 1\nin 1\nknit + f1000000000 1\nout 1\n", ""},
         BadInput{"CarrierNotIn", "carrier.k", ";!knitout-2\n;;Carriers: 1 2\nin 1\nknit + f1 2\nout 1\n",
                  "2"}),
-    [](const testing::TestParamInfo<BadInput>& info) { return info.param.name; });
+    [](const testing::TestParamInfo<BadInput>& one) { return one.param.name; });
 
 TEST(BadInput, PlaceIsLineAndColumn) {
   const TemporaryFolder folder;
@@ -101,7 +101,8 @@ TEST(BadInput, MissingFileAndFolder) {
     EXPECT_EQ(check.status, 1);
     EXPECT_THAT(check.out, AllOf(HasSubstr(file), HasSubstr("error")));
     for (const std::string& command : {std::string("relax"), std::string("render"), std::string("build")}) {
-      const CommandOutcome outcome = run_command({command, file, "-o", "out.png"}, folder);
+      const std::string out = command == "render" ? "out.png" : "out.h5";
+      const CommandOutcome outcome = run_command({command, file, "-o", out}, folder);
       EXPECT_EQ(outcome.status, 1) << command;
       EXPECT_THAT(outcome.err, AllOf(HasSubstr(file), HasSubstr("error"))) << command;
     }

@@ -8,7 +8,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
-#include <iterator>
+#include <sstream>
 #include <stdexcept>
 #include <thread>
 
@@ -40,7 +40,9 @@ std::vector<std::string> TemporaryFolder::names() const {
 
 std::string file_content(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
+  std::ostringstream content;
+  content << in.rdbuf();
+  return content.str();
 }
 
 CommandOutcome run_command(const std::vector<std::string>& arguments, const TemporaryFolder& folder,

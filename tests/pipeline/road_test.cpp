@@ -1,0 +1,208 @@
+// From a notation to relaxed cloth with the built command, checked from outside: files, JSON, exit status.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "outputs/state.hpp"
+#include "pipeline/run_command.hpp"
+
+namespace loopwright {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+const char* const plain =
+    ";!vermiculation-1\n"
+    ";;Name: plain\n;;Gauge: 12\n;;Yarn-A: wool 2/28 Nm\n;;Loop-Length: 5.9 mm\n"
+    ";;Size: 6 wales x 5 courses\n;;Edges: held\n"
+    "g\n";
+
+nlohmann::json json_of(const std::string& text) { return nlohmann::json::parse(text); }
+
+// The relaxed plain cell: every key is there, and the numbers agree with each other and with the file.
+TEST(Road, PeriodicCellRelaxesAndIsMeasured) {
+  const TemporaryFolder folder;
+  folder.write("plain.verm", plain);
+  const CommandOutcome outcome =
+      run_command({"relax", "plain.verm", "--periodic", "-o", "plain.h5", "--json", "-"}, folder);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const nlohmann::json j = json_of(outcome.out);
+  for (const char* key : {"loops",
+                          "yarns",
+                          "width_mm",
+                          "height_mm",
+                          "thickness_mm",
+                          "wale_spacing_mm",
+                          "course_spacing_mm",
+                          "loop_length_mm",
+                          "mass_g",
+                          "Kc",
+                          "Kw",
+                          "Ks",
+                          "newton_iterations",
+                          "linear_iterations",
+                          "residual",
+                          "converged",
+                          "interlacings",
+                          "interlacings_intact",
+                          "pass_throughs",
+                          "min_clearance",
+                          "areal_density_g_m2",
+                          "courses_per_cm",
+                          "wales_per_cm",
+                          "yarn_m",
+                          "cover_factor",
+                          "wall_s",
+                          "peak_memory_mb"})
+    EXPECT_TRUE(j.contains(key)) << key;
+  EXPECT_EQ(j["converged"], true);
+  EXPECT_LT(j["residual"], 2e-4);
+  EXPECT_EQ(j["interlacings"], j["interlacings_intact"]);
+  EXPECT_GT(j["interlacings"], 0);
+  EXPECT_EQ(j["pass_throughs"], 0);
+  // yarn barely stretches: the loop keeps the length that the file states
+  EXPECT_NEAR(j["loop_length_mm"], 5.9, 0.02 * 5.9);
+  // Munden (1959): dry relaxed 5.0 and 3.8, wet relaxed 5.3 and 4.1, fully relaxed 5.5 and 4.2
+  EXPECT_GT(j["Kc"], 4.9);
+  EXPECT_LT(j["Kc"], 5.6);
+  EXPECT_GT(j["Kw"], 3.7);
+  EXPECT_LT(j["Kw"], 4.3);
+  // 71 tex, 5.9 mm a loop
+  const double loops = j["loops"];
+  EXPECT_NEAR(j["mass_g"], loops * 71e-6 * 5.9, 1e-3 * loops * 71e-6 * 5.9);
+  EXPECT_NEAR(j["areal_density_g_m2"],
+              j["mass_g"].get<double>() * 1e6 / (j["width_mm"].get<double>() * j["height_mm"].get<double>()),
+              1e-6);
+  EXPECT_THAT(folder.names(), ElementsAre("plain.h5", "plain.verm"));
+
+  // the saved state measures the same
+  const CommandOutcome measured = run_command({"measure", "plain.h5", "--json", "-"}, folder);
+  ASSERT_EQ(measured.status, 0) << measured.err;
+  const nlohmann::json again = json_of(measured.out);
+  for (const char* key : {"width_mm", "Kc", "Kw", "mass_g", "residual", "converged", "pass_throughs",
+                          "interlacings_intact", "newton_iterations"})
+    EXPECT_EQ(again[key], j[key]) << key;
+}
+
+TEST(Road, WindowHasTheWalesAndCoursesAskedFor) {
+  const TemporaryFolder folder;
+  folder.write("plain.verm", plain);
+  for (const auto& [window, wales, courses] : {std::tuple("4x3", 4, 3), std::tuple("2x4", 2, 4)}) {
+    const CommandOutcome outcome =
+        run_command({"build", "plain.verm", "-o", "w.h5", "--json", "-", "--window", window}, folder);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const nlohmann::json j = json_of(outcome.out);
+    EXPECT_EQ(j["wales"], wales) << window;
+    EXPECT_EQ(j["courses"], courses) << window;
+    EXPECT_EQ(j["loops"], wales * courses) << window;
+  }
+}
+
+TEST(Road, FileSizeIsKeptWithHeldEdges) {
+  const TemporaryFolder folder;
+  folder.write("plain.verm", plain);
+  const CommandOutcome outcome =
+      run_command({"relax", "plain.verm", "-o", "p.h5", "--json", "p.json"}, folder);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const nlohmann::json j = json_of(file_content(folder.file("p.json")));
+  EXPECT_EQ(j["loops"], 30);
+  EXPECT_EQ(j["converged"], true);
+  EXPECT_THAT(outcome.out, AllOf(StartsWith("plain.verm: 30 loops, "), HasSubstr("interlacings intact")));
+}
+
+TEST(Road, ResultsDoNotDependOnThreads) {
+  const TemporaryFolder folder;
+  folder.write("plain.verm", plain);
+  for (const char* threads : {"1", "3"})
+    ASSERT_EQ(
+        run_command({"relax", "plain.verm", "-o", std::string(threads) + ".h5", "--threads", threads}, folder)
+            .status,
+        0);
+  EXPECT_EQ(file_content(folder.file("1.h5")), file_content(folder.file("3.h5")));
+}
+
+// Stopped after a few steps, saved, gone on with: the same equilibrium as in one go.
+TEST(Road, SavedStateIsGoneOnWith) {
+  const TemporaryFolder folder;
+  folder.write("plain.verm", plain);
+  ASSERT_EQ(run_command({"relax", "plain.verm", "--periodic", "-o", "whole.h5"}, folder).status, 0);
+  const CommandOutcome cut = run_command(
+      {"relax", "plain.verm", "--periodic", "-o", "part.h5", "--most-iterations", "12", "--json", "-"},
+      folder);
+  ASSERT_EQ(cut.status, 0) << cut.err;
+  EXPECT_EQ(json_of(cut.out)["converged"], false);
+  EXPECT_THAT(cut.err, HasSubstr("warning: not at rest"));
+  const CommandOutcome rest = run_command({"relax", "part.h5", "-o", "part.h5", "--json", "-"}, folder);
+  ASSERT_EQ(rest.status, 0) << rest.err;
+  const nlohmann::json j = json_of(rest.out);
+  EXPECT_EQ(j["converged"], true);
+  EXPECT_GT(j["newton_iterations"], 12);
+  const State whole = read_state(folder.file("whole.h5")), part = read_state(folder.file("part.h5"));
+  EXPECT_NEAR(part.fabric.width, whole.fabric.width, 0.01 * whole.fabric.width);
+  EXPECT_NEAR(part.fabric.height, whole.fabric.height, 0.01 * whole.fabric.height);
+}
+
+TEST(Road, InterruptedRunIsSavedAndSaysSo) {
+  const TemporaryFolder folder;
+  std::string large = plain;
+  large.replace(large.find("6 wales x 5"), 11, "60 wales x 60");
+  folder.write("large.verm", large);
+  const CommandOutcome outcome =
+      run_command({"relax", "large.verm", "-o", "large.h5", "--render", "large.png"}, folder, 2.5);
+  ASSERT_EQ(outcome.status, 130) << outcome.out << outcome.err;
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("stopped"), HasSubstr("large.h5")));
+  EXPECT_THAT(folder.names(), ElementsAre("large.h5", "large.verm"));
+  EXPECT_EQ(read_state(folder.file("large.h5")).fabric.loops.size(), 3600U);
+}
+
+TEST(Road, PicturesAreWrittenOfNotationAndState) {
+  const TemporaryFolder folder;
+  folder.write("plain.verm", plain);
+  ASSERT_EQ(run_command({"build", "plain.verm", "-o", "p.h5"}, folder).status, 0);
+  for (const char* view : {"front", "back", "left", "top", "corner"})
+    for (const char* file : {"plain.verm", "p.h5"}) {
+      const std::string png = std::string(view) + file + ".png";
+      const CommandOutcome outcome =
+          run_command({"render", file, "-o", png, "--view", view, "--picture-size", "160x120"}, folder);
+      if (outcome.err.find("OpenGL") != std::string::npos) GTEST_SKIP() << "no OpenGL here: " << outcome.err;
+      ASSERT_EQ(outcome.status, 0) << outcome.err;
+    }
+  // the same fabric, so the same picture; another view, another picture
+  EXPECT_EQ(file_content(folder.file("frontplain.verm.png")), file_content(folder.file("frontp.h5.png")));
+  EXPECT_NE(file_content(folder.file("frontp.h5.png")), file_content(folder.file("backp.h5.png")));
+}
+
+TEST(Road, CheckGivesItsFindingsAsJson) {
+  const TemporaryFolder folder;
+  folder.write("plain.verm", plain);
+  folder.write("bad.verm", std::string(plain) + "gq\n");
+  const CommandOutcome outcome = run_command({"check", "plain.verm", "bad.verm", "--json", "-"}, folder);
+  EXPECT_EQ(outcome.status, 1);
+  const nlohmann::json files = json_of(outcome.out)["files"];
+  ASSERT_EQ(files.size(), 2U);
+  EXPECT_EQ(files[0]["errors"], 0);
+  EXPECT_GT(files[0]["loops"], 0);
+  EXPECT_EQ(files[1]["file"], "bad.verm");
+  EXPECT_EQ(files[1]["errors"], 1);
+  EXPECT_EQ(files[1]["diagnostics"][0]["line"], 9);
+  EXPECT_EQ(files[1]["diagnostics"][0]["severity"], "error");
+}
+
+TEST(Road, OutputThatCannotBeWrittenIsAnError) {
+  const TemporaryFolder folder;
+  folder.write("plain.verm", plain);
+  const CommandOutcome outcome =
+      run_command({"relax", "plain.verm", "--periodic", "-o", "p.h5", "--json", "missing/p.json"}, folder);
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("missing/p.json"));
+  EXPECT_THAT(folder.names(), ElementsAre("plain.verm"));
+}
+
+}  // namespace
+}  // namespace loopwright

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "base/parallel.hpp"
 #include "mechanics/energies/bend.hpp"
@@ -100,8 +101,37 @@ YarnState Assembly::moved(const YarnState& state, const Unknowns& step, double s
   return next;
 }
 
-EnergyParts Assembly::energy(const YarnState& state) { return terms(state, nullptr, nullptr); }
-EnergyParts Assembly::gradient(const YarnState& state, Unknowns& gradient) { return terms(state, &gradient, nullptr); }
+Vec3 Assembly::remembered_slip(const SegmentPair& pair) const {
+  const auto key = [](const SegmentPair& p) { return std::tie(p.a, p.b, p.m, p.n); };
+  const auto at = std::lower_bound(remembered_.begin(), remembered_.end(), pair,
+                                   [&](const FrictionContact& c, const SegmentPair& p) { return key(c.pair) < key(p); });
+  return at != remembered_.end() && key(at->pair) == key(pair) ? at->law.slip : Vec3{};
+}
+
+// Place of the contact on yarn a minus its place on yarn b, from the extended points of the state last prepared.
+Vec3 Assembly::relative_place(const FrictionContact& contact, const YarnState& state) const {
+  const auto fa = static_cast<std::size_t>(model_.first[static_cast<std::size_t>(contact.pair.a)]);
+  const auto fb = static_cast<std::size_t>(model_.first[static_cast<std::size_t>(contact.pair.b)]);
+  Vec3 r = -state.lattice(contact.pair.m, contact.pair.n);
+  for (std::size_t k = 0; k < 4; ++k) r += contact.law.weight_a[k] * extended_[fa + k] - contact.law.weight_b[k] * extended_[fb + k];
+  return r;
+}
+
+void Assembly::accept(const YarnState& state) {
+  if (model_.friction == 0) return;
+  expand(model_, state, extended_);
+  for (FrictionContact& contact : friction_) contact.law.slip = contact.law.slip_after(relative_place(contact, state));
+  remembered_.clear();
+  for (const FrictionContact& contact : friction_)
+    if (contact.law.load > 0) remembered_.push_back(contact);
+}
+
+EnergyParts Assembly::energy(const YarnState& state) {
+  EnergyParts parts = terms(state, nullptr, nullptr);
+  for (const FrictionContact& contact : friction_) parts.friction += contact.law.energy(relative_place(contact, state));
+  return parts;
+}
+
 EnergyParts Assembly::hessian(const YarnState& state, Unknowns& gradient, BlockMatrix& hessian) {
   return terms(state, &gradient, &hessian);
 }
@@ -122,8 +152,8 @@ void Assembly::build_pattern(BlockMatrix& matrix) const {
       for (const auto i : n)
         for (const auto j : n) visit(i, j);
     }
-    for (const SegmentPair& p : pairs_) {
-      if (!in_contact(p)) continue;
+    for (const std::int32_t at : active_) {
+      const SegmentPair& p = pairs_[static_cast<std::size_t>(at)];
       const auto na = segment_nodes(p.a), nb = segment_nodes(p.b);
       for (const auto i : na)
         for (const auto j : nb) {
@@ -171,8 +201,9 @@ void Assembly::metric(BlockMatrix& matrix) const {
   }
   // Segments in contact: relative motion of their middles (weights 1/48, 23/48, 23/48, 1/48).
   constexpr std::array<double, 4> middle{1 / 48.0, 23 / 48.0, 23 / 48.0, 1 / 48.0};
-  for (const SegmentPair& pair : pairs_) {
-    if (pair.same_yarn || !in_contact(pair)) continue;
+  for (const std::int32_t at : active_) {
+    const SegmentPair& pair = pairs_[static_cast<std::size_t>(at)];
+    if (pair.same_yarn) continue;
     const auto fa = static_cast<std::size_t>(model_.first[static_cast<std::size_t>(pair.a)]), fb = static_cast<std::size_t>(model_.first[static_cast<std::size_t>(pair.b)]);
     for (std::size_t k = 0; k < 4; ++k)
       for (std::size_t l = 0; l < 4; ++l) {
@@ -197,7 +228,13 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
     gradient->u.assign(nodes, Vec3{});
     gradient->g = {};
   }
-  if (matrix) build_pattern(*matrix);
+  if (matrix) {
+    active_.clear();
+    for (std::size_t k = 0; k < pairs_.size(); ++k)
+      if (in_contact(pairs_[k])) active_.push_back(static_cast<std::int32_t>(k));
+    build_pattern(*matrix);
+    friction_.assign(model_.friction > 0 ? active_.size() : 0, {});
+  }
 
   const int chunks = chunk_count(model_.nodes);
   std::vector<Partial> partial(static_cast<std::size_t>(chunks));
@@ -275,8 +312,9 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
 
     // Contact.
     ContactPairOutput out;
-    for (const SegmentPair& pair : pairs_) {
-      if (matrix && !in_contact(pair)) continue;
+    const std::size_t candidates = matrix ? active_.size() : pairs_.size();
+    for (std::size_t candidate = 0; candidate < candidates; ++candidate) {
+      const SegmentPair& pair = pairs_[matrix ? static_cast<std::size_t>(active_[candidate]) : candidate];
       const bool touches_a = touches(pair.a), touches_b = touches(pair.b);
       if (!touches_a && !touches_b) continue;
       const bool whole = owns_segment(pair.a);
@@ -312,8 +350,41 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
         frac_a[k] = fraction_[fa + k];
         frac_b[k] = imaged ? fraction_[fb + k] + shift : fraction_[fb + k];
       }
+      // Friction: the contact's load, normal and place, weighted with the force of each sample.
+      FrictionContact rub;
+      Vec3 rub_force;
+      Symmetric3 rub_stiffness{};
+      if (matrix && model_.friction > 0) {
+        rub.pair = pair;
+        double force = 0, rub_total_b = 0;
+        Vec3 push;
+        for (std::size_t i = 0; i < n; ++i) {
+          const Vec3 fa_i{out.gradient_a[i][0], out.gradient_a[i][1], out.gradient_a[i][2]};
+          const double size_a = norm(fa_i), size_b = norm(Vec3{out.gradient_b[i][0], out.gradient_b[i][1], out.gradient_b[i][2]});
+          force += size_a;
+          rub_total_b += size_b;
+          push += fa_i;
+          for (std::size_t k = 0; k < 4; ++k) {
+            rub.law.weight_a[k] += size_a * model_.weights[i][k];
+            rub.law.weight_b[k] += size_b * model_.weights[i][k];
+          }
+        }
+        if (force > 0 && rub_total_b > 0 && squared_norm(push) > 0) {
+          for (std::size_t k = 0; k < 4; ++k) {
+            rub.law.weight_a[k] /= force;
+            rub.law.weight_b[k] /= rub_total_b;
+          }
+          rub.law.normal = normalized(push);
+          rub.law.load = model_.friction * norm(push);
+          rub.law.slip = rub.law.tangential(remembered_slip(pair));
+          rub.law.start = relative_place(rub, state);
+          rub_force = rub.law.force(rub.law.start);
+          rub_stiffness = rub.law.stiffness(rub.law.start);
+          if (whole) friction_[candidate] = rub;
+        }
+      }
       for (std::size_t k = 0; k < 4; ++k) {
-        Vec3 ga, gb;
+        Vec3 ga = rub.law.weight_a[k] * rub_force, gb = -rub.law.weight_b[k] * rub_force;
         for (std::size_t i = 0; i < n; ++i) {
           const double w = model_.weights[i][k];
           ga += w * Vec3{out.gradient_a[i][0], out.gradient_a[i][1], out.gradient_a[i][2]};
@@ -330,7 +401,12 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
       if (!matrix) continue;
       for (std::size_t k = 0; k < 4; ++k)
         for (std::size_t l = 0; l < 4; ++l) {
-          Symmetric3 aa{}, bb{};
+          Symmetric3 aa{}, bb{}, ab = out.between[k][l];
+          for (std::size_t d = 0; d < 6; ++d) {
+            aa[d] = rub.law.weight_a[k] * rub.law.weight_a[l] * rub_stiffness[d];
+            bb[d] = rub.law.weight_b[k] * rub.law.weight_b[l] * rub_stiffness[d];
+            ab[d] -= rub.law.weight_a[k] * rub.law.weight_b[l] * rub_stiffness[d];
+          }
           for (std::size_t i = 0; i < n; ++i) {
             const double w = model_.weights[i][k] * model_.weights[i][l];
             for (std::size_t d = 0; d < 6; ++d) {
@@ -338,7 +414,7 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
               bb[d] += w * out.hessian_b[i][d];
             }
           }
-          const Block between = unpacked(out.between[k][l]);
+          const Block between = unpacked(ab);
           add_block(fa + k, fa + l, unpacked(aa), frac_a[k], frac_a[l]);
           add_block(fb + k, fb + l, unpacked(bb), frac_b[k], frac_b[l]);
           add_block(fa + k, fb + l, between, frac_a[k], frac_b[l]);

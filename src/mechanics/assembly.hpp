@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mechanics/contact/segment_pairs.hpp"
+#include "mechanics/energies/friction.hpp"
 #include "mechanics/linear/block_matrix.hpp"
 #include "mechanics/yarn_model.hpp"
 
@@ -14,7 +15,8 @@ namespace loopwright {
 
 struct EnergyParts {
   double stretch = 0, bend = 0, contact = 0, plates = 0;
-  double total() const { return stretch + bend + contact + plates; }
+  double friction = 0;  // work against friction since the last Hessian: not stored in the cloth
+  double total() const { return stretch + bend + contact + plates + friction; }
 };
 
 class Assembly {
@@ -28,11 +30,13 @@ class Assembly {
 
   // Infinite where two samples are inside a core.
   EnergyParts energy(const YarnState& state);
-  // Gradient with held points' u-part set to zero and measures that are not free set to zero.
-  EnergyParts gradient(const YarnState& state, Unknowns& gradient);
-  // Gradient and full Hessian; rows and columns of what is held are those of the identity. Only for the state that
+  // Gradient (zero for what is held) and full Hessian; rows and columns of what is held are those of the identity. Only for the state that
   // update_pairs() was last given: the pattern holds the pairs that are in contact there.
+  // With friction this also takes down every contact's load, normal and place: until the next call, energy() counts
+  // friction work from this state.
   EnergyParts hessian(const YarnState& state, Unknowns& gradient, BlockMatrix& hessian);
+  // Moves the friction history along: the cloth has gone from the last Hessian's state to this one.
+  void accept(const YarnState& state);
 
   // The metric of steps, on the Hessian's pattern: squared relative motion of neighbouring control points along the yarn and of
   // segments in contact, plus a little of the motion itself. What makes a step untrue is turning of yarn and sliding of
@@ -47,7 +51,15 @@ class Assembly {
   YarnState moved(const YarnState& state, const Unknowns& step, double scale) const;
 
  private:
+  // A contact of two segments, as friction sees it; `pair` indexes pairs_.
+  struct FrictionContact {
+    SegmentPair pair;
+    Friction law;
+  };
+
   EnergyParts terms(const YarnState& state, Unknowns* gradient, BlockMatrix* hessian);
+  Vec3 remembered_slip(const SegmentPair& pair) const;
+  Vec3 relative_place(const FrictionContact& contact, const YarnState& state) const;
   void prepare(const YarnState& state);
   void build_pattern(BlockMatrix& hessian) const;
   bool in_contact(const SegmentPair& pair) const;
@@ -55,6 +67,9 @@ class Assembly {
 
   const YarnModel& model_;
   std::vector<SegmentPair> pairs_;
+  std::vector<std::int32_t> active_;           // pairs in contact in the last Hessian's state
+  std::vector<FrictionContact> friction_;      // one for each of these, if there is friction
+  std::vector<FrictionContact> remembered_;    // history: contacts of the last accepted step, sorted like pairs_
   std::vector<Vec3> extended_;
   SamplePlaces places_;
   std::vector<std::array<double, 2>> fraction_;  // [extended]

@@ -111,6 +111,7 @@ NewtonResult newton(const YarnModel& model, YarnState& state, const NewtonOption
     else
       loose = std::max(0.6, 0.7 * loose);
     state = std::move(next);
+    assembly.accept(state);
   }
   result.shift = shift;
   return result;

@@ -19,6 +19,7 @@ void check_material(const YarnMaterial& m) {
   require(positive(m.contact.outer) && positive(m.contact.core) && m.contact.core < m.contact.outer,
           "the contact core must be thinner than the outer diameter, and both positive");
   require(positive(m.contact.stiffness), "contact stiffness must be a positive number");
+  require(std::isfinite(m.friction) && m.friction >= 0 && m.friction <= 5, "the friction coefficient must be from 0 to 5");
   require(std::isfinite(m.contact.exponent) && m.contact.exponent > 1, "the contact exponent must be above 1");
 }
 
@@ -51,6 +52,7 @@ YarnModel build_yarn_model(const Fabric& fabric, const ModelOptions& options) {
   model.free = options.free;
   model.plates = options.plates;
   model.contact = options.material.contact;
+  model.friction = options.material.friction;
   double longest_segment = 0;
   for (const FabricYarn& yarn : fabric.yarns) {
     check_yarn(fabric, yarn);

@@ -26,6 +26,7 @@ struct YarnMaterial {
   double stretch_stiffness = 3000;  // EA d^2 / B
   double bend_stiffness = 1;        // B of this yarn over B of the reference yarn
   ContactLaw contact;               // outer diameter 1 for the reference yarn
+  double friction = 0;              // coefficient of yarn on yarn; 0: frictionless
 };
 
 struct YarnModel {
@@ -51,6 +52,7 @@ struct YarnModel {
   std::vector<std::uint8_t> held;                  // [node]
 
   ContactLaw contact;
+  double friction = 0;
   int samples = 8;                                 // contact samples per segment
   SampleWeights weights{};                         // spline weights of the samples
   double excluded = 1.9634954084936207;            // same-yarn pairs closer than this (1.25 pi/2 d) along the yarn do not touch

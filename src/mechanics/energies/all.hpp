@@ -4,9 +4,10 @@
 
 #include "mechanics/energies/bend.hpp"
 #include "mechanics/energies/contact.hpp"
+#include "mechanics/energies/friction.hpp"
 #include "mechanics/energies/plates.hpp"
 #include "mechanics/energies/stretch.hpp"
 
 namespace loopwright {
-using AllEnergies = std::tuple<Stretch, Bend, Contact, Plates>;
+using AllEnergies = std::tuple<Stretch, Bend, Contact, Friction, Plates>;
 }

@@ -25,7 +25,10 @@ class RelaxWatch {
       : bar_("relaxing"), tolerance_(options.tolerance), grows_(options.grow_in), radius_(grows_ ? 0 : 1) {}
 
   bool operator()(const RelaxProgress& progress) {
-    radius_ = progress.radius;
+    // the first report at full radius comes before the first step there
+    if (progress.radius < 1 || (last_.radius >= 1 && progress.newton_iterations > last_.newton_iterations))
+      radius_ = progress.radius;
+    last_ = progress;
     double share = 0.5 * progress.radius;
     if (progress.radius >= 1) {
       first_residual_ = std::max(first_residual_, progress.residual);
@@ -49,6 +52,7 @@ class RelaxWatch {
   double tolerance_ = 0, first_residual_ = 0, best_ = 0;
   bool grows_ = true;
   double radius_ = 0;
+  RelaxProgress last_;
 };
 
 double peak_memory_mb() {

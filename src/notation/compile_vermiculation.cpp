@@ -4,19 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 
-#include "notation/fabric_headers.hpp"
+#include "notation/piece_plan.hpp"
 #include "notation/read_vermiculation.hpp"
 
 namespace loopwright {
 namespace {
-
-constexpr int smallest_margin = 3;  // wales and courses on each side
-constexpr std::size_t widest_repeat = 10'000;
-
-bool forms_loop(char letter) { return letter == 'g' || letter == 'e' || letter == 'v' || letter == 'n'; }
-int rounded_up(int value, int multiple) { return (value + multiple - 1) / multiple * multiple; }
 
 struct TooMany {};  // thrown and caught inside the compiler alone: ends it when the piece is too large
 
@@ -27,8 +20,12 @@ class Compiler {
 
   Program program() {
     describe();
-    if (!diagnostics_.ok() || !find_repeat() || !find_size()) return std::move(program_);
-    find_gating();
+    const auto plan = plan_piece(source_, options_, program_.settings, diagnostics_);
+    if (!plan) return std::move(program_);
+    plan_ = *plan;
+    const auto width = static_cast<std::size_t>(plan_.last - plan_.first);
+    front_held_.assign(width, 0);
+    rear_held_.assign(width, 0);
     try {
       knit_piece();
     } catch (const TooMany&) {
@@ -37,7 +34,7 @@ class Compiler {
       program_.repeat_starts.clear();
       program_.window = {};
       diagnostics_.error({}, "the piece takes more than " + std::to_string(options_.most_instructions) +
-                                 " instructions; give a smaller ;;Size");
+                                 " instructions, or as many idle letters; give a smaller ;;Size");
     }
     return std::move(program_);
   }
@@ -53,116 +50,28 @@ class Compiler {
       program_.carriers.push_back(named ? source_.carriers[i] : source_.yarns[i].name);
       program_.yarns.push_back(source_.yarns[i].data);
     }
-    FabricSettings& settings = program_.settings;
-    edges_ = options_.edges ? *options_.edges : settings.edges.value_or(Edges::held);
-    settings.edges = edges_;
-    if (options_.size_wales > 0) settings.size_wales = options_.size_wales;
-    if (options_.size_courses > 0) settings.size_courses = options_.size_courses;
-  }
-
-  // The repeat: the least common width of all passes, and the lines that knit.
-  bool find_repeat() {
-    std::size_t wales = 1;
-    int courses = 0;
-    for (const CourseLine& line : source_.lines) {
-      if (line.knits()) ++courses;
-      for (const Pass& pass : line.passes) {
-        for (const std::size_t width : {pass.cells.size(), pass.rear.size()}) {
-          if (width == 0) continue;
-          wales = std::lcm(wales, width);
-          if (wales <= widest_repeat) continue;
-          diagnostics_.error(pass.at,
-                             "the widths of the passes up to here have no common repeat of at most " +
-                                 std::to_string(widest_repeat) +
-                                 " wales; give them the same width, or widths that divide one another");
-          return false;
-        }
-        for (const RackMark& mark : pass.racks) {
-          reach_ = std::max(reach_, static_cast<int>(std::ceil(std::abs(mark.racking))));
-        }
-      }
-    }
-    if (courses == 0) {
-      diagnostics_.error({}, "there is no course; write a line of vermiculation letters, e.g. 'g' for plain");
-      return false;
-    }
-    repeat_wales_ = static_cast<int>(wales);
-    repeat_courses_ = courses;
-    program_.settings.repeat_wales = repeat_wales_;
-    program_.settings.repeat_courses = repeat_courses_;
-    return true;
-  }
-
-  bool find_size() {
-    const FabricSettings& settings = program_.settings;
-    wales_ = settings.size_wales > 0 ? settings.size_wales : repeat_wales_;
-    courses_ = settings.size_courses > 0 ? settings.size_courses : repeat_courses_;
-    if (edges_ == Edges::periodic) {
-      const int wales = rounded_up(wales_, repeat_wales_), courses = rounded_up(courses_, repeat_courses_);
-      if (wales != wales_ || courses != courses_) {
-        diagnostics_.warning({}, "a periodic cell is made of whole repeats; the size becomes " +
-                                     std::to_string(wales) + " wales x " + std::to_string(courses) +
-                                     " courses");
-      }
-      wales_ = wales;
-      courses_ = courses;
-    }
-    if (edges_ == Edges::held || edges_ == Edges::periodic) {
-      margin_wales_ = rounded_up(std::max(smallest_margin, reach_), repeat_wales_);
-      margin_courses_ = rounded_up(smallest_margin, repeat_courses_);
-    }
-    first_ = -margin_wales_;
-    last_ = wales_ + margin_wales_;
-    if (std::max(last_, -first_) > 3 * largest_size) {
-      diagnostics_.error({}, "the piece with its margins is wider than " + std::to_string(3 * largest_size) +
-                                 " needles; give a smaller ;;Size or a narrower repeat");
-      return false;
-    }
-    const auto width = static_cast<std::size_t>(last_ - first_);
-    front_held_.assign(width, 0);
-    rear_held_.assign(width, 0);
-    return true;
-  }
-
-  // Facing needles cannot both knit in one pass when the beds stand opposite; half a pitch of racking lets
-  // them.
-  void find_gating() {
-    gating_ = source_.gating.value_or(Gating::opposite);
-    if (source_.gating) return;
-    for (const CourseLine& line : source_.lines) {
-      for (const Pass& pass : line.passes) {
-        if (!pass.both_beds) continue;
-        const std::size_t width = std::lcm(pass.cells.size(), pass.rear.size());
-        for (std::size_t w = 0; w < width && gating_ == Gating::opposite; ++w) {
-          if (forms_loop(pass.cells[w % pass.cells.size()].letter) &&
-              forms_loop(pass.rear[w % pass.rear.size()].letter)) {
-            gating_ = Gating::half_pitch;
-          }
-        }
-      }
-    }
   }
 
   void knit_piece() {
     last_direction_.assign(source_.yarns.size(), Direction::none);
-    const int total = courses_ + 2 * margin_courses_;
+    const int total = plan_.courses + 2 * plan_.margin_courses;
     int knitted = 0;
     std::vector<int> held_at_start;
     while (knitted < total) {
       // every repeat starts with the beds at home, so that all repeats are alike
       standing_ = {};
       program_.repeat_starts.push_back(position());
-      if (knitted == margin_courses_) held_at_start = held_in_window();
+      if (knitted == plan_.margin_courses) held_at_start = held_in_window();
       for (const CourseLine& line : source_.lines) {
         if (knitted == total) break;
         const bool at_repeat = position() == program_.repeat_starts.back();
-        if (margin_wales_ > 0 && (at_repeat || line.knits())) mark_window(knitted, held_at_start);
+        if (plan_.margin_wales > 0 && (at_repeat || line.knits())) mark_window(knitted, held_at_start);
         knit_line(line);
         if (line.knits()) ++knitted;
       }
     }
     program_.repeat_starts.push_back(position());
-    if (edges_ == Edges::bound_off) bind_off();
+    if (plan_.edges == Edges::bound_off) bind_off();
     take_carriers_out();
     warn_of_idle_notation();
   }
@@ -173,6 +82,8 @@ class Compiler {
     racking_at_ = standing_.at;
     bool racks_alone = true;
     for (const Pass& pass : line.passes) {
+      // letters that make no instruction take time all the same
+      if ((letters_met_ += front_held_.size()) > 50 * options_.most_instructions) throw TooMany();
       racks_alone = racks_alone && pass.cells.empty();
       if (pass.knits()) {
         knit(pass);
@@ -188,16 +99,16 @@ class Compiler {
   // Sets where the wanted piece starts and ends, before the line that follows `knitted` courses.
   void mark_window(int knitted, const std::vector<int>& held_at_start) {
     ProgramWindow& window = program_.window;
-    if (knitted == margin_courses_ && window.needles == 0) {
-      window = {0, wales_, position(), 0};
-    } else if (knitted == margin_courses_ + courses_ && window.instructions == 0) {
+    if (knitted == plan_.margin_courses && window.needles == 0) {
+      window = {0, plan_.wales, position(), 0};
+    } else if (knitted == plan_.margin_courses + plan_.courses && window.instructions == 0) {
       window.instructions = position() - window.first_instruction;
-      if (edges_ != Edges::periodic) return;
+      if (plan_.edges != Edges::periodic) return;
       const std::vector<int> held = held_in_window();
       const auto differs = std::mismatch(held.begin(), held.end(), held_at_start.begin());
       if (differs.first == held.end()) return;
       const auto place = static_cast<int>(differs.first - held.begin());
-      const Needle needle{place < wales_ ? Bed::front : Bed::back, place % wales_};
+      const Needle needle{place < plan_.wales ? Bed::front : Bed::back, place % plan_.wales};
       diagnostics_.error({}, "the notation does not close to a periodic cell: needle " + to_string(needle) +
                                  " holds " + std::to_string(*differs.second) +
                                  " loops where the repeat starts and " + std::to_string(*differs.first) +
@@ -208,14 +119,15 @@ class Compiler {
   std::vector<int> held_in_window() const {
     std::vector<int> held;
     for (const auto* bed : {&front_held_, &rear_held_}) {
-      held.insert(held.end(), bed->begin() + margin_wales_, bed->begin() + margin_wales_ + wales_);
+      held.insert(held.end(), bed->begin() + plan_.margin_wales,
+                  bed->begin() + plan_.margin_wales + plan_.wales);
     }
     return held;
   }
 
-  int& front_held(int needle) { return front_held_[static_cast<std::size_t>(needle - first_)]; }
-  int& rear_held(int needle) { return rear_held_[static_cast<std::size_t>(needle - first_)]; }
-  bool in_piece(int needle) const { return needle >= first_ && needle < last_; }
+  int& front_held(int needle) { return front_held_[static_cast<std::size_t>(needle - plan_.first)]; }
+  int& rear_held(int needle) { return rear_held_[static_cast<std::size_t>(needle - plan_.first)]; }
+  bool in_piece(int needle) const { return needle >= plan_.first && needle < plan_.last; }
 
   static const Cell& cell_of(const std::vector<Cell>& cells, int wale) {
     const int width = static_cast<int>(cells.size());
@@ -275,10 +187,11 @@ class Compiler {
     std::vector<std::pair<int, const RackMark*>> result;
     if (inner.empty()) return result;
     const int width = static_cast<int>(pass.cells.size());
-    for (int start = first_ - ((first_ % width) + width) % width; start < last_; start += width) {
+    for (int start = plan_.first - ((plan_.first % width) + width) % width; start < plan_.last;
+         start += width) {
       for (const RackMark* mark : inner) {
         const int wale = start + static_cast<int>(mark->before);
-        if (wale > first_ && wale < last_) result.emplace_back(wale, mark);
+        if (wale > plan_.first && wale < plan_.last) result.emplace_back(wale, mark);
       }
     }
     return result;
@@ -289,7 +202,7 @@ class Compiler {
     const auto rackings = rackings_between(pass);
     for (const std::vector<Cell>* row : {&pass.cells, &pass.rear}) {
       auto next_racking = rackings.begin();
-      for (int w = first_; w < last_ && !row->empty(); ++w) {
+      for (int w = plan_.first; w < plan_.last && !row->empty(); ++w) {
         for (; next_racking != rackings.end() && next_racking->first == w; ++next_racking) {
           rack_to(*next_racking->second);
         }
@@ -329,7 +242,7 @@ class Compiler {
   // come over.
   void imply_transfers(const Pass& pass) {
     for (const bool to_rear : {true, false}) {
-      for (int w = first_; w < last_; ++w) {
+      for (int w = plan_.first; w < plan_.last; ++w) {
         const Cell& cell = cell_of(pass.cells, w);
         const bool wants_rear = cell.letter == 'e' || cell.letter == 'n';
         if (!forms_loop(cell.letter) || wants_rear != to_rear) continue;
@@ -409,9 +322,9 @@ class Compiler {
     last_at_ = pass.at;
     // the runs between rackings inside the course, in the order in which the carriage reaches them
     auto rackings = rackings_between(pass);
-    std::vector<int> bounds{first_};
+    std::vector<int> bounds{plan_.first};
     for (const auto& racking : rackings) bounds.push_back(racking.first);
-    bounds.push_back(last_);
+    bounds.push_back(plan_.last);
     const int runs = static_cast<int>(bounds.size()) - 1;
     for (int i = 0; i < runs; ++i) {
       const int run = direction == Direction::right ? i : runs - 1 - i;
@@ -425,7 +338,7 @@ class Compiler {
 
   void knit_run(const Pass& pass, int begin, int end, Direction direction,
                 const std::vector<CarrierId>& carriers) {
-    const double racking = racking_ + (gating_ == Gating::half_pitch ? 0.5 : 0);
+    const double racking = racking_ + (plan_.gating == Gating::half_pitch ? 0.5 : 0);
     find_actions(pass, begin, end, racking);
     if (actions_.empty()) return;
     add_rack(racking, racking_at_.line > 0 ? racking_at_ : pass.at);
@@ -459,14 +372,14 @@ class Compiler {
   // All loops to the front bed, then from the carrier's side on: each loop goes onto its neighbour's needle
   // and the yarn is knitted through both. The last loop stays on its needle.
   void bind_off() {
-    for (int w = first_; w < last_; ++w) {
+    for (int w = plan_.first; w < plan_.last; ++w) {
       if (rear_held(w) == 0) continue;
       add_rack(0, last_at_);
       add_transfer({Bed::back, w}, {Bed::front, w}, last_at_);
     }
     const bool from_right = last_direction_[last_carriers_.front().position()] == Direction::right;
     const int step = from_right ? -1 : 1;
-    for (int w = from_right ? last_ - 1 : first_; in_piece(w + step); w += step) {
+    for (int w = from_right ? plan_.last - 1 : plan_.first; in_piece(w + step); w += step) {
       if (front_held(w) == 0) continue;
       add_rack(0, last_at_);
       add_transfer({Bed::front, w}, {Bed::back, w}, last_at_);
@@ -506,12 +419,9 @@ class Compiler {
   const FabricOptions& options_;
   Diagnostics& diagnostics_;
   Program program_;
-  Edges edges_ = Edges::held;
-  Gating gating_ = Gating::opposite;
-  int repeat_wales_ = 1, repeat_courses_ = 1, reach_ = 0;
-  int wales_ = 0, courses_ = 0, margin_wales_ = 0, margin_courses_ = 0;
-  int first_ = 0, last_ = 0;                 // needles of the piece with its margins: [first_, last_)
-  std::vector<int> front_held_, rear_held_;  // loops on each needle, by needle - first_
+  PiecePlan plan_;
+  std::size_t letters_met_ = 0;
+  std::vector<int> front_held_, rear_held_;  // loops on each needle, by needle - plan_.first
   double racking_ = 0;                       // asked for by the notation
   RackMark standing_;                        // the racking that lines start with
   SourceLocation racking_at_;

@@ -1,45 +1,22 @@
-// From the text of a fabric file to its passes; the grammar stands in docs/notation.md.
+// A fabric file as a whole: magic line, headers, brackets. Course lines are parse_course's; grammar in
+// docs/notation.md.
 #include <algorithm>
-#include <cmath>
 
 #include "notation/fabric_headers.hpp"
 #include "notation/material.hpp"
+#include "notation/parse_course.hpp"
 #include "notation/scan.hpp"
 #include "notation/vermiculation.hpp"
 
 namespace loopwright {
 
 namespace {
-bool is_yarn_letter(char c) { return c == 'g' || c == 'e' || c == 'v' || c == 'n'; }
-bool is_transfer_letter(char c) { return c == 'T' || c == 't'; }
-bool holds(const std::vector<Cell>& cells, bool (*wanted)(char)) {
-  return std::any_of(cells.begin(), cells.end(), [&](const Cell& cell) { return wanted(cell.letter); });
-}
-}  // namespace
-
-bool Pass::knits() const { return holds(cells, is_yarn_letter) || holds(rear, is_yarn_letter); }
-bool Pass::transfers() const { return holds(cells, is_transfer_letter) || holds(rear, is_transfer_letter); }
-bool CourseLine::knits() const {
-  return std::any_of(passes.begin(), passes.end(), [](const Pass& pass) { return pass.knits(); });
-}
-
-namespace {
 
 constexpr std::string_view magic = ";!vermiculation-";
-constexpr std::size_t most_wales = 10'000;       // of one written pass
 constexpr std::size_t most_letters = 5'000'000;  // of the whole notation, repeats written out
 constexpr std::size_t most_lines = 100'000;      // the same in lines
-constexpr std::size_t most_passes = 1000;        // of one line
 constexpr std::size_t most_yarns = 26;
-constexpr int deepest_group = 32;
-constexpr int most_unknown_letters = 20;  // of one line, then the line is no course at all
-constexpr double largest_racking = 8;     // what a Shima converter accepts
-
-// The letters, cells and rackings of one row (one side of '/').
-struct Row {
-  std::vector<Cell> cells;
-  std::vector<RackMark> racks;
-};
+constexpr std::size_t deepest_bracket = 32;
 
 class VermiculationParser {
  public:
@@ -205,7 +182,7 @@ class VermiculationParser {
     if (text_[begin] == '[') {
       if (trimmed(text_).size() > 1)
         error(begin + 1, "'[' stands on a line of its own; put the course on the next");
-      if (open_brackets_.size() == deepest_group) return error(begin, "brackets are nested too deep");
+      if (open_brackets_.size() == deepest_bracket) return error(begin, "brackets are nested too deep");
       open_brackets_.push_back({here(begin), result_.lines.size(), letters_});
     } else if (text_[begin] == ']') {
       close_bracket(begin);
@@ -219,10 +196,10 @@ class VermiculationParser {
     if (open_brackets_.empty()) return error(index, "this ']' has no '[' before it; remove it");
     const Bracket open = open_brackets_.back();
     open_brackets_.pop_back();
-    at_ = index + 1;
-    const std::size_t times = read_times();
-    skip_blanks();
-    if (at_ < text_.size()) error(at_, "']*n' stands on a line of its own; put what follows on the next");
+    std::size_t at = index + 1;
+    const std::size_t times = read_times(text_, at, line_, diagnostics_);
+    at = std::min(text_.find_first_not_of(" \t", at), text_.size());
+    if (at < text_.size()) error(at, "']*n' stands on a line of its own; put what follows on the next");
     const std::size_t lines = result_.lines.size() - open.first_line;
     const std::size_t letters = letters_ - open.letters;
     if (times == 0) return;
@@ -240,19 +217,7 @@ class VermiculationParser {
   }
 
   void read_course() {
-    CourseLine line;
-    at_ = 0;
-    unknown_letters_ = 0;
-    while (true) {
-      line.passes.push_back(read_pass());
-      if (at_ == text_.size()) break;
-      if (line.passes.size() == most_passes) {
-        give_up(at_, "more than " + std::to_string(most_passes) +
-                         " passes in one line; write them on several lines");
-        break;
-      }
-      ++at_;  // the '&'
-    }
+    CourseLine line = parse_course(text_, line_, result_.yarns, diagnostics_);
     for (const Pass& pass : line.passes) letters_ += pass.cells.size() + pass.rear.size() + pass.racks.size();
     if (letters_ > most_letters || result_.lines.size() == most_lines) {
       error(0, "the notation is too long; at most " + std::to_string(most_lines) + " lines and " +
@@ -261,252 +226,6 @@ class VermiculationParser {
       return;
     }
     result_.lines.push_back(std::move(line));
-  }
-
-  // Up to '&' or the end of the line.
-  Pass read_pass() {
-    Pass pass;
-    skip_blanks();
-    pass.at = here(at_);
-    const std::size_t begin = at_;
-    const std::string_view rest = text_.substr(at_);
-    const std::size_t head_end = rest.substr(0, rest.find('&')).find_first_of(":<>");
-    if (head_end != std::string_view::npos) read_head(pass, at_ + head_end);
-    const std::size_t errors_before = static_cast<std::size_t>(diagnostics_.errors());
-    Row front = read_row();
-    Row rear;
-    if (at_ < text_.size() && text_[at_] == '/') {
-      pass.both_beds = true;
-      ++at_;
-      rear = read_row();
-      while (at_ < text_.size() && text_[at_] == '/') {
-        error(at_, "a pass has two rows, front / rear; remove this '/' or join a second pass with '&'");
-        ++at_;
-        read_row();
-      }
-    }
-    const std::size_t wales = front.cells.size();
-    pass.cells = std::move(front.cells);
-    pass.rear = std::move(rear.cells);
-    pass.racks = std::move(front.racks);
-    for (RackMark mark : rear.racks) {
-      if (mark.before < pass.rear.size()) {
-        diagnostics_.error(mark.at,
-                           "racking among the rear needles; write it among the front needles, left of '/'");
-      }
-      mark.before = wales;
-      pass.racks.push_back(mark);
-    }
-    if (static_cast<std::size_t>(diagnostics_.errors()) == errors_before) check_pass(pass, begin);
-    return pass;
-  }
-
-  // `A+B>`: yarns, then '>' (to the right), '<' (to the left) or ':' (back from where the carrier is).
-  void read_head(Pass& pass, std::size_t end) {
-    pass.direction = text_[end] == '>'   ? Direction::right
-                     : text_[end] == '<' ? Direction::left
-                                         : Direction::none;
-    std::size_t begin = at_;
-    const bool names = !trimmed(text_.substr(at_, end - at_)).empty();
-    while (names && begin <= end) {
-      const std::size_t stop = std::min(text_.find('+', begin), end);
-      const std::string_view name = trimmed(text_.substr(begin, stop - begin));
-      const std::size_t name_at = begin + text_.substr(begin).find_first_not_of(" \t");
-      if (const VermiculationYarn* yarn = find_yarn(name)) {
-        const int place = static_cast<int>(yarn - result_.yarns.data());
-        if (std::find(pass.yarns.begin(), pass.yarns.end(), place) != pass.yarns.end()) {
-          error(name_at, "yarn " + quoted(name) + " is named twice; name it once");
-        } else {
-          pass.yarns.push_back(place);
-        }
-      } else if (name.empty()) {
-        error(std::min(begin, end), "expected the name of a yarn before '+', ':', '<' or '>'");
-      } else {
-        error(name_at, "no yarn is called " + quoted(name) + "; give it a Yarn- header or name another");
-      }
-      begin = stop + 1;
-    }
-    at_ = end + 1;
-  }
-
-  void check_pass(const Pass& pass, std::size_t begin) {
-    if (pass.cells.empty() && pass.racks.empty()) {
-      return error(begin, "a pass of zero wales; write a letter for each needle, or remove it");
-    }
-    if (pass.both_beds && (pass.rear.empty() || pass.cells.empty())) {
-      return error(begin,
-                   "a pass on both beds names needles on both sides of '/'; write '.' or '-' for idle ones");
-    }
-    for (const auto* row : {&pass.cells, &pass.rear}) {
-      for (const Cell& cell : *row) {
-        if (!is_transfer_letter(cell.letter)) continue;
-        if (pass.knits()) {
-          diagnostics_.error(cell.at,
-                             "transfers and stitches in one pass; put '&' or a new line between them");
-          return;
-        }
-      }
-    }
-    if (!pass.knits() && (!pass.yarns.empty() || pass.direction != Direction::none)) {
-      error(begin, "a pass without stitches or tucks carries no yarn; remove what stands before the letters");
-    }
-    if (!pass.both_beds) return;
-    check_row(pass.cells, "gvt.-", "left of '/' stand the front needles: g v t . -");
-    check_row(pass.rear, "enT.-", "right of '/' stand the rear needles: e n T . -");
-  }
-
-  void check_row(const std::vector<Cell>& cells, std::string_view letters, const std::string& what) {
-    const auto wrong = std::find_if(cells.begin(), cells.end(), [&](const Cell& cell) {
-      return letters.find(cell.letter) == letters.npos;
-    });
-    if (wrong != cells.end()) {
-      diagnostics_.error(wrong->at, std::string("'") + wrong->letter + "' belongs to the other bed; " + what);
-    }
-  }
-
-  // Letters, groups and rackings up to '/', '&' or the end of the line.
-  Row read_row() {
-    Row row;
-    read_items(row, 0);
-    return row;
-  }
-
-  void read_items(Row& row, int depth) {
-    while (true) {
-      skip_blanks();
-      if (at_ == text_.size() || text_[at_] == '/' || text_[at_] == '&') return;
-      const std::size_t begin = at_;
-      const char c = text_[at_];
-      if (c == ')' && depth > 0) return;
-      ++at_;
-      if (c == 'R' || c == 'r') {
-        read_racking(row, c, begin);
-        if (row.racks.size() > most_wales) return give_up(begin, "too many rackings in one pass");
-        continue;
-      }
-      const std::size_t first_cell = row.cells.size(), first_rack = row.racks.size();
-      if (c == '(') {
-        if (depth == deepest_group) return give_up(begin, "groups are nested too deep");
-        read_items(row, depth + 1);
-        if (at_ == text_.size() || text_[at_] != ')')
-          return give_up(begin, "this '(' is never closed; add ')'");
-        ++at_;
-        if (row.cells.size() == first_cell)
-          error(begin, "an empty group has zero wales; put letters into it");
-      } else if (is_yarn_letter(c) || is_transfer_letter(c) || c == '.' || c == '-') {
-        row.cells.push_back({c, here(begin)});
-      } else {
-        unknown_letter(begin);
-        continue;
-      }
-      skip_blanks();
-      const std::size_t times_at = at_;
-      repeat(row, first_cell, first_rack, read_times_if_any(), times_at);
-      if (row.cells.size() > most_wales || row.racks.size() > most_wales) {
-        return give_up(begin, "more than " + std::to_string(most_wales) + " wales in one pass");
-      }
-    }
-  }
-
-  // Says it and leaves the rest of the line unread.
-  void give_up(std::size_t index, std::string message) {
-    error(index, std::move(message));
-    at_ = text_.size();
-  }
-
-  void repeat(Row& row, std::size_t first_cell, std::size_t first_rack, std::size_t times,
-              std::size_t index) {
-    const std::size_t cells = row.cells.size() - first_cell, racks = row.racks.size() - first_rack;
-    if (times > most_wales || cells * times > most_wales || racks * times > most_wales) {
-      return error(index,
-                   "this makes more than " + std::to_string(most_wales) + " wales; repeat it fewer times");
-    }
-    for (std::size_t i = 0; times > 1 && i < (times - 1) * cells; ++i) {
-      const Cell cell = row.cells[first_cell + i];
-      row.cells.push_back(cell);
-    }
-    for (std::size_t i = 0; times > 1 && i < (times - 1) * racks; ++i) {
-      RackMark mark = row.racks[first_rack + i];
-      mark.before += cells;
-      row.racks.push_back(mark);
-    }
-  }
-
-  std::size_t read_times_if_any() { return at_ < text_.size() && text_[at_] == '*' ? read_times() : 1; }
-
-  // `*n`, n from 1; answers 0 after saying what is wrong.
-  std::size_t read_times() {
-    skip_blanks();
-    const std::size_t begin = at_;
-    if (at_ < text_.size() && text_[at_] == '*') ++at_;
-    skip_blanks();
-    const std::size_t digits = at_;
-    while (at_ < text_.size() && is_digit(text_[at_])) ++at_;
-    const auto times = parsed_integer(text_.substr(digits, at_ - digits));
-    if (digits == begin || digits == at_) {
-      error(digits, "expected how many times, e.g. '*2'");
-      return 0;
-    }
-    if (!times || *times > static_cast<int>(most_wales)) {
-      error(digits,
-            "at most " + std::to_string(most_wales) + " repeats; let ;;Size repeat the notation instead");
-      return 0;
-    }
-    if (*times == 0) error(digits, "repeated zero times; remove it or write a number from 1");
-    return static_cast<std::size_t>(*times);
-  }
-
-  // The number after R or r. A '.' belongs to it only before a digit, so that `R1.` is R1 and a missed
-  // needle.
-  void read_racking(Row& row, char letter, std::size_t begin) {
-    const std::size_t number_at = at_;
-    if (at_ < text_.size() && (text_[at_] == '-' || text_[at_] == '+')) ++at_;
-    while (at_ < text_.size() && is_digit(text_[at_])) ++at_;
-    if (at_ + 1 < text_.size() && text_[at_] == '.' && is_digit(text_[at_ + 1])) {
-      ++at_;
-      while (at_ < text_.size() && is_digit(text_[at_])) ++at_;
-    }
-    const std::string_view number = text_.substr(number_at, at_ - number_at);
-    const auto needles = parsed_number(number);
-    if (!needles) {
-      return error(number_at,
-                   std::string("expected a number of needles after '") + letter + "', e.g. 'R1' or 'R-1'");
-    }
-    if (std::abs(*needles) > largest_racking || std::floor(*needles * 4) != *needles * 4) {
-      return error(number_at,
-                   "racking is counted in needles, from -8 to 8 in quarters, not " + quoted(number));
-    }
-    row.racks.push_back({row.cells.size(), letter == 'R' ? *needles + 0.0 : 0.0 - *needles, here(begin)});
-  }
-
-  void unknown_letter(std::size_t index) {
-    if (++unknown_letters_ > most_unknown_letters)
-      return give_up(index, "too many unknown letters; the rest of the line is not read");
-    // the bytes of one UTF-8 character go together, so that it is reported once
-    while (at_ < text_.size() && (static_cast<unsigned char>(text_[at_]) & 0xc0) == 0x80) ++at_;
-    const std::string_view letter = text_.substr(index, at_ - index);
-    std::string hint =
-        "letters are g e (stitch on the front, rear bed) v n (tuck) T t (transfer) R r (racking) "
-        ". (missed) - (inactive)";
-    if (letter == "k" || letter == "K")
-      hint = "a stitch on the front bed is 'g'";
-    else if (letter == "p" || letter == "P")
-      hint = "a stitch on the rear bed is 'e'";
-    else if (letter == "X" || letter == "x")
-      hint = "an inactive needle is '-'";
-    else if (letter == "*")
-      hint = "put the letter or group that is repeated before it";
-    else if (letter == ")")
-      hint = "there is no '(' before it";
-    else if (letter == "[" || letter == "]")
-      hint = "courses are repeated by '[' and ']*n' on lines of their own; needles by '( )*n'";
-    else if (letter == ":" || letter == "<" || letter == ">")
-      hint = "it stands once, before the letters of a pass";
-    error(index, "unknown letter " + quoted(letter) + "; " + hint);
-  }
-
-  void skip_blanks() {
-    while (at_ < text_.size() && is_blank(text_[at_])) ++at_;
   }
 
   struct Bracket {
@@ -519,12 +238,10 @@ class VermiculationParser {
   Vermiculation result_;
   int line_ = 0;
   std::string_view text_;  // the line being read, without its comment
-  std::size_t at_ = 0;     // place in text_
   bool headers_ended_ = false, said_carriage_return_ = false, full_ = false;
   SourceLocation carriers_at_;
   std::vector<Bracket> open_brackets_;
   std::size_t letters_ = 0;
-  int unknown_letters_ = 0;  // of the line
 };
 
 }  // namespace

@@ -293,9 +293,12 @@ TEST(Vermiculation, TooLargeAPieceIsAnError) {
   options.most_instructions = 1000;
   const Program program =
       read_vermiculation(";!vermiculation-1\n;;Size: 100 x 100\ng\n", diagnostics, options);
-  EXPECT_THAT(said(diagnostics),
-              HasSubstr("the piece takes more than 1000 instructions; give a smaller ;;Size"));
+  EXPECT_THAT(said(diagnostics), HasSubstr("the piece takes more than 1000 instructions"));
   EXPECT_TRUE(program.instructions.empty());
+  // letters that do nothing are limited too: 10,000 lines of transfers where nothing is held
+  Diagnostics idle("idle.verm");
+  read_vermiculation(";!vermiculation-1\n;;Size: 1000 x 1000\ng-*99\n[\n-*99 t\n]*10000\n", idle, options);
+  EXPECT_THAT(said(idle), HasSubstr("or as many idle letters"));
 }
 
 }  // namespace

@@ -97,15 +97,21 @@ class LoopPlacer {
           point(id, LoopPart::leg, on_leg(id, share, side * across, bulge + layer + sign.leg_offset)));
     };
     if (const double lean = leaning(id); std::abs(lean) > 0.4) {
-      // The more a loop lies on its side, the farther its lower leg must swing out below the head and its
-      // upper leg above the feet: the head stays upright on its needle, and so do the feet.
       const bool lower = side * lean > 0;
-      const double steep = steepness(id), swing = 1.5 * std::max(0.0, 1 - 2 * steep);
-      // Loops that lean side by side are nearer to each other the more they lean, and so are their legs.
-      const double width = std::max(steep, 1 - 2 * steep);
-      leg(0.3, 1.8 * width + (lower ? 0 : swing), 1.5 * (0.7 * s + 0.3 * c));
+      const double steep = steepness(id);
+      // Loops that lean side by side are the nearer to each other the more they lean, and so are their legs;
+      // the one above lies over the one below near its feet and under it near its head.
+      const double width = std::max(steep, 1 - 2 * steep),
+                   aslant = std::clamp(3.6 * (1 - 2 * steep), 0.0, 1.0);
+      const double shingle = (lower ? 0.6 : -0.6) * aslant;
+      // A loop that lies flat, as in the chain of a bind-off, has its head and its feet at one level: its
+      // lower leg swings out below the head, its upper leg above the feet, both of which stay upright on
+      // their needles.
+      const double swing = 3 * std::max(0.0, 1 - 4 * steep);
+      const double near_end = 2 - 1.35 * aslant, far_end = 2 - 1.15 * aslant;
+      leg(0.3, lower ? far_end * width : near_end * width + swing, 1.5 * (0.7 * s + 0.3 * c) + shingle);
       leg(0.5, 2 * width + swing / 2, 0.75 * (s + c));
-      leg(0.7, 2.2 * width + (lower ? swing : 0), 1.5 * (0.3 * s + 0.7 * c));
+      leg(0.7, lower ? near_end * width + swing : far_end * width, 1.5 * (0.3 * s + 0.7 * c) - shingle);
     } else {
       leg(0.5, 2, 0.75 * (s + c));
     }

@@ -10,7 +10,7 @@ namespace loopwright {
 // A hair as a polyline: `points` of equal count each, in the fabric's coordinates, with the surface normal at
 // its root.
 struct Hair {
-  static constexpr int point_count = 6;
+  static constexpr int point_count = 5;
   std::array<Vec3, point_count> points;
   Vec3 normal;
   std::size_t ring = 0;  // that it grows from

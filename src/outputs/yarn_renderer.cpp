@@ -186,7 +186,7 @@ void YarnRenderer::draw_shadow_map(const Light& light) {
   glViewport(0, 0, light.size, light.size);
   glClear(GL_DEPTH_BUFFER_BIT);
   glUseProgram(depth_program_);
-  set(depth_program_, "shadow_matrix", light.matrix);
+  set(depth_program_, "view_projection", light.matrix);
   draw_yarns();
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, static_cast<GLuint>(bound));
 }

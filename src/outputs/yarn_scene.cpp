@@ -51,12 +51,36 @@ std::array<float, 3> as_floats(const Vec3& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
+// Sets the open share of the sky of the vertices from `first` on. Vertices of a ring lie together, so the
+// search is shared by a few of them.
+void shade_crevices(const Sky& sky, YarnScene& scene, std::size_t first) {
+  constexpr std::size_t per_chunk = 8192;
+  const auto chunks = static_cast<int>((scene.vertices.size() - first + per_chunk - 1) / per_chunk);
+  parallel_chunks(chunks, [&](int chunk) {
+    std::vector<SkySample> near;
+    Vec3 searched;
+    bool fresh = true;
+    const std::size_t begin = first + static_cast<std::size_t>(chunk) * per_chunk;
+    for (std::size_t k = begin; k < std::min(begin + per_chunk, scene.vertices.size()); ++k) {
+      SceneVertex& v = scene.vertices[k];
+      const Vec3 p = Vec3{v.position[0], v.position[1], v.position[2]} + scene.centre;
+      const Vec3 normal = Vec3{1.0 * v.normal[0], 1.0 * v.normal[1], 1.0 * v.normal[2]} / 127;
+      if (fresh || squared_norm(p - searched) > 0.04) {
+        sky.gather(p, near);
+        searched = p;
+        fresh = false;
+      }
+      v.colour[3] = static_cast<std::uint8_t>(std::lround(255 * Sky::open_share(p, normal, near)));
+    }
+  });
+}
+
 // Adds tubes to the scene. Long yarns are cut where the pattern of plies repeats, so that the arc length
 // stays small enough for a float.
 class TubeBuilder {
  public:
-  TubeBuilder(YarnScene& scene, double pixels_per_diameter)
-      : scene_(scene), pixels_per_diameter_(pixels_per_diameter) {}
+  TubeBuilder(YarnScene& scene, const Sky& sky, double pixels_per_diameter)
+      : scene_(scene), sky_(sky), pixels_per_diameter_(pixels_per_diameter) {}
 
   void add(const Fabric& fabric, std::size_t y) {
     const FabricYarn& yarn = fabric.yarns[y];
@@ -77,6 +101,7 @@ class TubeBuilder {
     repeat_ = yarn.periodic ? whole : 256 * pitch;
 
     double start = 0;
+    const std::size_t first = scene_.vertices.size();
     first_vertex_.clear();
     for (std::size_t k = 0; k < rings.size(); ++k) {
       const double arc = rings[k].arc * stretch - start;
@@ -92,6 +117,7 @@ class TubeBuilder {
       add_cap(rings.front(), -rings.front().tangent);
       add_cap(rings.back(), rings.back().tangent);
     }
+    if (scene_.look.occlusion) shade_crevices(sky_, scene_, first);
     const double thickness = yarn.diameter * pixels_per_diameter_;
     if (scene_.look.fuzz > 0 && thickness >= 14) add_hairs(rings, y, std::min(1.0, thickness / 28));
   }
@@ -142,7 +168,7 @@ class TubeBuilder {
     const auto seed = static_cast<std::uint32_t>(y);
     for (const Hair& hair : loose_fibres(rings, radius_, sides_, 28 * share * scene_.look.fuzz, seed)) {
       for (int i = 0; i < Hair::point_count; ++i) {
-        // its root's vertex gives colour, normal and tangent
+        // its root's vertex gives colour, light, normal and tangent
         SceneVertex v = scene_.vertices[first_vertex_[hair.ring] + static_cast<std::size_t>(hair.side)];
         v.position = as_floats(hair.points[static_cast<std::size_t>(i)] - scene_.centre);
         v.along = {static_cast<float>(i) / (Hair::point_count - 1), 0, 1};
@@ -156,37 +182,13 @@ class TubeBuilder {
   }
 
   YarnScene& scene_;
+  const Sky& sky_;
   double pixels_per_diameter_;
   std::vector<std::size_t> first_vertex_;  // of each ring
   std::array<std::uint8_t, 4> colour_{};
   int sides_ = 0;
   double radius_ = 0, repeat_ = 0;
 };
-
-// Sets every vertex' open share of the sky. Vertices of a ring lie together, so the search is shared by a few
-// of them.
-void shade_crevices(const Fabric& fabric, YarnScene& scene) {
-  const Sky sky(fabric);
-  constexpr std::size_t per_chunk = 8192;
-  const auto chunks = static_cast<int>((scene.vertices.size() + per_chunk - 1) / per_chunk);
-  parallel_chunks(chunks, [&](int chunk) {
-    std::vector<SkySample> near;
-    Vec3 searched;
-    bool fresh = true;
-    const std::size_t begin = static_cast<std::size_t>(chunk) * per_chunk;
-    for (std::size_t k = begin; k < std::min(begin + per_chunk, scene.vertices.size()); ++k) {
-      SceneVertex& v = scene.vertices[k];
-      const Vec3 p = Vec3{v.position[0], v.position[1], v.position[2]} + scene.centre;
-      const Vec3 normal = Vec3{1.0 * v.normal[0], 1.0 * v.normal[1], 1.0 * v.normal[2]} / 127;
-      if (fresh || squared_norm(p - searched) > 0.04) {
-        sky.gather(p, near);
-        searched = p;
-        fresh = false;
-      }
-      v.colour[3] = static_cast<std::uint8_t>(std::lround(255 * Sky::open_share(p, normal, near)));
-    }
-  });
-}
 
 }  // namespace
 
@@ -236,9 +238,9 @@ YarnScene yarn_scene(const Fabric& fabric, const SceneOptions& options) {
       const Vec3 o = fabric.lattice(m, n);
       scene.offsets.push_back({static_cast<float>(o.x), static_cast<float>(o.y), static_cast<float>(o.z)});
     }
-  TubeBuilder builder(scene, options.pixels_per_diameter);
+  const Sky sky = options.look.occlusion ? Sky(fabric) : Sky();
+  TubeBuilder builder(scene, sky, options.pixels_per_diameter);
   for (std::size_t y = 0; y < fabric.yarns.size(); ++y) builder.add(fabric, y);
-  if (options.look.occlusion) shade_crevices(fabric, scene);
   return scene;
 }
 

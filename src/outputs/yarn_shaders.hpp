@@ -90,8 +90,9 @@ void main() {
   float cells = plies * abs(twist) * 4.0;
   vec2 period = vec2(44.0, floor(yarn_place.z * cells + 0.5));
   vec2 place = vec2(yarn_place.x * 44.0, yarn_place.y * cells);
-  float fibre = noise(place, period) + 0.9 * noise(place * vec2(3.0, 2.0), period * vec2(3.0, 2.0));
   float fibre_detail = (1.0 - smoothstep(0.25, 0.8, fwidth(yarn_place.y) * cells)) * detail;
+  float fibre = 0.0;
+  if (fibre_detail > 0.0) fibre = noise(place, period) + 0.9 * noise(place * vec2(3.0, 2.0), period * vec2(3.0, 2.0));
 
   vec3 shape = normalize(n + across * (0.62 * lean * detail) + b * (0.28 * fibre * fibre_detail));
   float open = yarn_colour.a * mix(0.9, 1.0 - 0.36 * groove, detail);
@@ -106,8 +107,8 @@ void main() {
   float sheen = pow(max(1.0 - along_half * along_half, 0.0), 24.0) * key;
 
   vec3 albedo = pow(yarn_colour.rgb, vec3(2.2)) * (1.0 + 0.3 * fibre * fibre_detail);
-  vec3 light = vec3(1.0, 0.97, 0.92) * key * 0.92 * mix(1.0, open, 0.6)
-             + mix(vec3(0.30, 0.27, 0.25), vec3(0.50, 0.54, 0.60), sky) * open
+  vec3 light = vec3(1.0, 0.97, 0.92) * key * 1.04 * mix(1.0, open, 0.6)
+             + mix(vec3(0.24, 0.21, 0.19), vec3(0.44, 0.48, 0.54), sky) * open
              + vec3(0.14) * fill * open;
   // light that went through neighbouring yarn takes its colour: deep places are saturated, not grey
   vec3 through = albedo * (1.0 - open) * 0.16;
@@ -140,8 +141,11 @@ void main() {
 inline constexpr const char* depth_vertex = R"(#version 330 core
 layout(location = 0) in vec3 position;
 layout(location = 5) in vec3 offset;
-uniform mat4 shadow_matrix;
-void main() { gl_Position = shadow_matrix * vec4(position + offset, 1); }
+uniform mat4 view_projection;
+void main() {
+  vec3 world = position + offset;
+  gl_Position = view_projection * vec4(world, 1);
+}
 )";
 
 inline constexpr const char* depth_fragment = R"(#version 330 core

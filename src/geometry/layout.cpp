@@ -15,7 +15,7 @@ namespace {
 
 // Weights of the least-squares rows. Yarn decides; what lies over each other without being drawn through each
 // other only settles what yarn leaves open (e.g. the level of one rib of an interlock against the other).
-constexpr double yarn_weight = 1, covered_tuck_weight = 0.1, passed_weight = 0.15, opposite_weight = 0.03;
+constexpr double yarn_weight = 1, covered_tuck_weight = 0.3, passed_weight = 0.15, opposite_weight = 0.03;
 // A held loop grows by this share of a course for every float or tuck that must find room along its legs.
 constexpr double growth_per_event = 0.45, most_growth = 2.5;
 constexpr double tuck_height = 0.6;  // of a course, where nothing is held below it
@@ -86,30 +86,25 @@ double warp_rest(const Loop& loop, std::size_t events, double course_pitch) {
   return course_pitch * (1 + std::min(most_growth, growth_per_event * static_cast<double>(events)));
 }
 
-// The loop on the needle that faced a new loop's needle while it was made, if any: by time, over (bed, half
-// slots).
-class FacingLoops {
- public:
-  LoopId facing(const YarnGraph& graph, const Loop& loop) const {
-    const Bed bed = is_front(loop.bed) ? Bed::back : Bed::front;
-    LoopId newest;
-    for (int half : {-1, 0, 1}) {
-      const auto found = last_.find({bed, key(loop.slot) + half});
-      if (found == last_.end()) continue;
+// By loop: the loop on the needle that faced its needle while it was made, if any.
+std::vector<LoopId> facing_loops(const YarnGraph& graph) {
+  std::vector<LoopId> facing(graph.loops.size());
+  std::map<std::pair<bool, int>, LoopId> last;  // by front bed and half slots
+  const auto key = [](double slot) { return static_cast<int>(std::lround(2 * slot)); };
+  for (std::size_t i = 0; i < graph.loops.size(); ++i) {
+    const Loop& loop = graph.loops[i];
+    const bool front = is_front(loop.bed);
+    for (const int half : {-1, 0, 1}) {
+      const auto found = last.find({!front, key(loop.slot) + half});
+      if (found == last.end()) continue;
       const Loop& other = graph.loop(found->second);
       const bool held = other.head_instruction < 0 || other.head_instruction > loop.instruction;
-      if (held && (!newest.valid() || newest < found->second)) newest = found->second;
+      if (held && facing[i] < found->second) facing[i] = found->second;
     }
-    return newest;
+    if (is_front(loop.head_bed) == front) last[{front, key(loop.slot)}] = LoopId(i);
   }
-  void add(const Loop& loop, LoopId id) {
-    if (loop.head_bed == loop.bed) last_[{is_front(loop.bed) ? Bed::front : Bed::back, key(loop.slot)}] = id;
-  }
-
- private:
-  static int key(double slot) { return static_cast<int>(std::lround(2 * slot)); }
-  std::map<std::pair<Bed, int>, LoopId> last_;
-};
+  return facing;
+}
 
 double median(std::vector<double> values) {
   if (values.empty()) return 0;
@@ -134,17 +129,23 @@ Eigen::VectorXd levels(const YarnGraph& graph, const GeometryOptions& options, N
           {{nodes.lower(event.tuck), 1}, {nodes.lower(held), share - 1}, {nodes.upper(held), -share}}, 0,
           passed_weight);
     }
-  FacingLoops facing_loops;
   for (std::size_t i = 0; i < graph.loops.size(); ++i) {
     const LoopId id(i);
-    const Loop& loop = graph.loops[i];
-    const double weight = covers[i] ? covered_tuck_weight : yarn_weight;
     rows.add_row({{nodes.upper(id), 1}, {nodes.lower(id), -1}},
-                 warp_rest(loop, events.of_loop[i].size(), options.course_pitch), weight);
-    if (const LoopId held = facing_loops.facing(graph, loop); held.valid())
-      rows.add_row({{nodes.lower(id), 1}, {nodes.lower(held), -0.5}, {nodes.upper(held), -0.5}}, 0,
-                   opposite_weight);
-    facing_loops.add(loop, id);
+                 warp_rest(graph.loops[i], events.of_loop[i].size(), options.course_pitch),
+                 covers[i] ? covered_tuck_weight : yarn_weight);
+  }
+  const std::vector<LoopId> facing = facing_loops(graph);
+  std::vector<double> faced_by(graph.loops.size()), before(graph.loops.size());
+  for (const LoopId held : facing)
+    if (held.valid()) faced_by[held.position()] += 1;
+  for (std::size_t i = 0; i < facing.size(); ++i) {
+    if (!facing[i].valid()) continue;
+    const std::size_t held = facing[i].position();
+    const double share = (before[held] += 1) / (faced_by[held] + 1);
+    rows.add_row(
+        {{nodes.lower(LoopId(i)), 1}, {nodes.lower(facing[i]), share - 1}, {nodes.upper(facing[i]), -share}},
+        0, opposite_weight);
   }
   for (std::size_t y = 0; y < graph.yarns.size(); ++y) {
     const GraphYarn& yarn = graph.yarns[y];
@@ -175,12 +176,9 @@ Eigen::VectorXd levels(const YarnGraph& graph, const GeometryOptions& options, N
 
 std::vector<std::uint8_t> faced_loops(const YarnGraph& graph) {
   std::vector<std::uint8_t> faced(graph.loops.size(), 0);
-  FacingLoops facing_loops;
-  for (std::size_t i = 0; i < graph.loops.size(); ++i) {
-    if (const LoopId held = facing_loops.facing(graph, graph.loops[i]); held.valid())
-      faced[i] = faced[held.position()] = 1;
-    facing_loops.add(graph.loops[i], LoopId(i));
-  }
+  const std::vector<LoopId> facing = facing_loops(graph);
+  for (std::size_t i = 0; i < facing.size(); ++i)
+    if (facing[i].valid()) faced[i] = faced[facing[i].position()] = 1;
   return faced;
 }
 
@@ -205,6 +203,21 @@ std::vector<double> node_heights(const YarnGraph& graph, const GeometryOptions& 
   for (std::size_t i = 0; i < sum.size(); ++i)
     if (count[i] > 0) sum[i] /= count[i];
   return sum;
+}
+
+// Tucks on one needle lie below its binding point and below each other, the older the lower.
+void lower_tucks(const YarnGraph& graph, const GeometryOptions& options, Layout& layout) {
+  constexpr double step = 0.35;  // of a course
+  for (std::vector<LoopId> stack : head_stacks(graph)) {
+    std::sort(stack.begin(), stack.end(), [](LoopId a, LoopId b) { return b < a; });
+    double above = layout.upper[stack.front().position()].y;
+    for (const LoopId id : stack) {
+      if (graph.loop(id).kind != LoopKind::tuck) continue;
+      double& y = layout.lower[id.position()].y;
+      y = std::min(y, above - step * options.course_pitch);
+      above = y;
+    }
+  }
 }
 
 }  // namespace
@@ -270,6 +283,7 @@ Layout lay_out(const YarnGraph& graph, const GeometryOptions& options) {
     layout.lower[i] = {slot[low] * layout.slot_pitch, y[static_cast<Eigen::Index>(low)], z[low]};
     layout.upper[i] = {slot[high] * layout.slot_pitch, y[static_cast<Eigen::Index>(high)], z[high]};
   }
+  lower_tucks(graph, options, layout);
   // A binding point with little room above or below it gets a flatter template, the same for all that meet
   // there.
   std::vector<double> scale(2 * n, 1);

@@ -18,7 +18,7 @@ struct Hair {
 };
 
 // About `per_diameter` hairs on each d of length of a tube with the given rings, radius and number of sides.
-// They leave at a flat angle along the yarn, rise to at most a fifth of a diameter and taper off; some return
+// They leave at a flat angle along the yarn, rise to at most 0.3 d and taper off; some return
 // to the surface. The same `seed` gives the same hairs.
 std::vector<Hair> loose_fibres(const std::vector<TubeRing>& rings, double radius, int sides,
                                double per_diameter, std::uint32_t seed);

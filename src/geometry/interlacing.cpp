@@ -139,17 +139,17 @@ class Fan {
   Vec3 low_, high_, centre_;
 };
 
-bool is_intact(const LoopWindow& parent, const LoopWindow& child, const Vec3& up, const Vec3& child_up,
-               const Vec3& moved, int sign) {
-  const int head = top_of_head(parent, up), child_head = top_of_head(child, child_up);
+// With the parent's head at `head` and the top of the child's at `child_head`, in samples.
+bool is_intact(const LoopWindow& parent, int head, const LoopWindow& child, int child_head, const Vec3& moved,
+               int sign) {
   const double neck_share = neck / 0.5;
   const Fan fan(piece(*parent.yarn, head - static_cast<int>(std::lround(neck_share * parent.half_before)),
                       head + static_cast<int>(std::lround(neck_share * parent.half_after)), Vec3{}));
   const int slide = child_head - child.apex;
   const int first = std::max(child.begin + slide, child_head - static_cast<int>(foot_reach * child.loop));
   const int last = std::min(child.end + slide, child_head + static_cast<int>(foot_reach * child.loop));
-  const int sense =
-      parent.direction == Direction::left ? 1 : -1;  // the rim's normal points to the front, to the rear
+  // The normal that the sense of the yarn gives to the rim points to the front or to the rear.
+  const int sense = parent.direction == Direction::left ? 1 : -1;
   return sense * fan.passes(piece(*child.yarn, first, child_head, moved)) == sign &&
          sense * fan.passes(piece(*child.yarn, child_head, last, moved)) == -sign;
 }
@@ -232,7 +232,11 @@ InterlacingCheck check_interlacings(const Fabric& fabric) {
       const Vec3& up = directions[static_cast<std::size_t>(parent->second.order)];
       const Vec3& child_up = directions[static_cast<std::size_t>(child->second.order)];
       const Vec3 moved = fabric.lattice(interlacing.shift[0], interlacing.shift[1]);
-      intact = is_intact(parent->second, child->second, up, child_up, moved, interlacing.sign);
+      // Where the heads were fitted; if that is not it, yarn may have slid, and they are found anew.
+      const LoopWindow &above = child->second, &below = parent->second;
+      intact = is_intact(below, below.apex, above, above.apex, moved, interlacing.sign) ||
+               is_intact(below, top_of_head(below, up), above, top_of_head(above, child_up), moved,
+                         interlacing.sign);
     }
     if (intact)
       ++check.intact;

@@ -11,7 +11,7 @@ constexpr double layer_gap =
     2.2;  // between yarns that lie over each other, in r: a little more than they are thick
 // Between the middles of loops whose legs cross; their legs lie like shingles, 0.6 up and down.
 constexpr double crossing_gap = 3.8;
-constexpr double split_spread = 1.7;
+constexpr double split_spread = 1.1;
 
 // Loops drawn through the same head to the same side, front one first.
 std::vector<LoopId> plated_group(const YarnGraph& graph, LoopId id, const Loop& loop) {
@@ -24,16 +24,6 @@ std::vector<LoopId> plated_group(const YarnGraph& graph, LoopId id, const Loop& 
            graph.loop(a).head_rank < graph.loop(b).head_rank;
   });
   return group;
-}
-
-// For every loop the fullest stack that its head lies in.
-std::vector<std::vector<LoopId>> stacks_of_heads(const YarnGraph& graph) {
-  std::vector<std::vector<LoopId>> stack_of(graph.loops.size());
-  for (const Loop& loop : graph.loops)
-    for (const LoopId parent : loop.parents)
-      if (loop.parents.size() > stack_of[parent.position()].size())
-        stack_of[parent.position()] = loop.parents;
-  return stack_of;
 }
 
 // A passes behind (s > 0) the upper legs of all parents and B before their heads. A head in the same stack
@@ -102,6 +92,15 @@ void separate_legs(const YarnGraph& graph, const Layout& layout, double r, std::
 }
 
 }  // namespace
+
+std::vector<std::vector<LoopId>> stacks_of_heads(const YarnGraph& graph) {
+  std::vector<std::vector<LoopId>> stack_of(graph.loops.size());
+  for (const Loop& loop : graph.loops)
+    for (const LoopId parent : loop.parents)
+      if (loop.parents.size() > stack_of[parent.position()].size())
+        stack_of[parent.position()] = loop.parents;
+  return stack_of;
+}
 
 std::vector<LoopSigns> loop_signs(const YarnGraph& graph, const Layout& layout, double shape_radius) {
   const std::vector<std::vector<LoopId>> stack_of = stacks_of_heads(graph);

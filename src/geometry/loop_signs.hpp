@@ -25,6 +25,9 @@ struct LoopSigns {
   double leg_offset = 0;   // z of the legs where they cross those of other loops (cables)
 };
 
+// For every loop the fullest stack that its head lies in; empty for a head without children.
+std::vector<std::vector<LoopId>> stacks_of_heads(const YarnGraph& graph);
+
 std::vector<LoopSigns> loop_signs(const YarnGraph& graph, const Layout& layout, double shape_radius);
 
 }  // namespace loopwright

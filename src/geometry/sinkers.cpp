@@ -24,6 +24,7 @@ class SinkerPlacer {
         signs_(signs),
         piece_(piece),
         events_(held_events(graph)),
+        stacks_(stacks_of_heads(graph)),
         r_(options.shape_radius()),
         sx_(options.wale_pitch / 8),
         sy_(options.course_pitch / 7) {}
@@ -85,8 +86,10 @@ class SinkerPlacer {
   Vec3 hanging(LoopId id, double side) const {
     const std::size_t i = id.position();
     const LoopSigns& sign = signs_[i];
-    return piece_.layout.lower[i] + Vec3{4 * side * sx_, -3 * sy_ * piece_.layout.y_scale_lower[i],
-                                         (sign.foot_layer - 1.5 * sign.s) * r_};
+    // Where the foot reaches behind several heads, the sinker does not come back in between them.
+    const double foot = sign.s * sign.foot + 0.6;
+    const double z = sign.s * std::min(sign.s * sign.foot_layer - 1.5, foot);
+    return piece_.layout.lower[i] + Vec3{4 * side * sx_, -3 * sy_ * piece_.layout.y_scale_lower[i], z * r_};
   }
 
   double extra_length(const Loop& from, const Loop& to) const {
@@ -137,7 +140,7 @@ class SinkerPlacer {
         const double share = events_.share_of_float(held.loop, yarn, gap);
         const double y = height_on(held.loop, line, share);
         y_sum += y;
-        x_sum += leg_centre(held.loop, y);
+        x_sum += leg_centre(held, y);
         double low = std::numeric_limits<double>::infinity(), high = -low;
         z_range(held.loop, y, low, high);
         if (low > high) low = high = piece_.layout.lower[held.loop.position()].z;
@@ -161,7 +164,7 @@ class SinkerPlacer {
   void add_own_wales(const Float& yarn_float, const Vec3& begin, const Vec3& end_point,
                      std::vector<PassedLoop>& loops) const {
     const double low = std::min(begin.x, end_point.x), high = std::max(begin.x, end_point.x);
-    const auto add = [&](LoopId id, LoopId of) {
+    const auto add = [&](LoopId id, LoopId of, Bed bed) {
       const Loop& own = graph_.loop(of);
       const double x = own.slot * piece_.layout.slot_pitch;
       if (x <= low || x >= high) return;
@@ -170,11 +173,18 @@ class SinkerPlacer {
       PassedLoop passed_loop;
       passed_loop.loop = id;
       passed_loop.slot = own.slot;
-      passed_loop.bed = own.bed;
+      passed_loop.bed = bed;
       loops.push_back(passed_loop);
     };
-    add(yarn_float.from, yarn_float.from);
-    for (const LoopId parent : graph_.loop(yarn_float.to).parents) add(parent, yarn_float.to);
+    const auto on_own_bed = graph_.loop(yarn_float.to).bed;
+    add(yarn_float.from, yarn_float.from, graph_.loop(yarn_float.from).bed);
+    const std::vector<LoopId>& parents = graph_.loop(yarn_float.to).parents;
+    for (const LoopId parent : parents) add(parent, yarn_float.to, on_own_bed);
+    // Loops of the same stack that the loop is not drawn through lay on the facing needle.
+    if (parents.empty()) return;
+    for (const LoopId other : stacks_[parents.front().position()])
+      if (std::find(parents.begin(), parents.end(), other) == parents.end() && other < yarn_float.to)
+        add(other, yarn_float.to, is_front(on_own_bed) ? Bed::back : Bed::front);
   }
 
   // Between the feet and the head of the held loop, in the share of that room that the order of events leaves
@@ -189,9 +199,11 @@ class SinkerPlacer {
     return std::clamp(line, centre - reach, centre + reach);
   }
 
-  double leg_centre(LoopId held, double y) const {
-    const Vec3& low = piece_.layout.lower[held.position()];
-    const Vec3& high = piece_.layout.upper[held.position()];
+  // Where a held loop's legs are at height y; a loop that lies flat is passed at the needle.
+  double leg_centre(const PassedLoop& held, double y) const {
+    const Vec3& low = piece_.layout.lower[held.loop.position()];
+    const Vec3& high = piece_.layout.upper[held.loop.position()];
+    if (high.y - low.y < 0.3 * std::abs(high.x - low.x)) return held.slot * piece_.layout.slot_pitch;
     const double share = high.y > low.y ? std::clamp((y - low.y) / (high.y - low.y), 0.0, 1.0) : 0.5;
     return low.x + (high.x - low.x) * share;
   }
@@ -224,6 +236,7 @@ class SinkerPlacer {
   const std::vector<LoopSigns>& signs_;
   const PlacedPiece& piece_;
   HeldEvents events_;
+  std::vector<std::vector<LoopId>> stacks_;
   double r_, sx_, sy_;
 };
 

@@ -91,6 +91,10 @@ class LoopPlacer {
     points.push_back(
         point(id, LoopPart::leg,
               at_lower(id, side * (1.444 + spread), 1.556, sign.lower_leg + low_share * sign.leg_offset)));
+    if (std::abs(leaning(id)) > 0.4 && steepness(id) < 0.3) {
+      flat_legs(id, side, points);
+      return;
+    }
     const auto leg = [&](double share, double across, double bulge) {
       const double layer = std::abs(foot) > 0 ? foot + (head - foot) * share : head;
       points.push_back(
@@ -101,21 +105,49 @@ class LoopPlacer {
       const double steep = steepness(id);
       // Loops that lean side by side are the nearer to each other the more they lean, and so are their legs;
       // the one above lies over the one below near its feet and under it near its head.
-      const double width = std::max(steep, 1 - 2 * steep),
-                   aslant = std::clamp(3.6 * (1 - 2 * steep), 0.0, 1.0);
+      const double width = std::max(steep, 1 - 2 * steep);
+      const double aslant = std::clamp(3.6 * (1 - 2 * steep), 0.0, 1.0);
       const double shingle = (lower ? 0.6 : -0.6) * aslant;
-      // A loop that lies flat, as in the chain of a bind-off, has its head and its feet at one level: its
-      // lower leg swings out below the head, its upper leg above the feet, both of which stay upright on
-      // their needles.
-      const double swing = 3 * std::max(0.0, 1 - 4 * steep);
       const double near_end = 2 - 1.35 * aslant, far_end = 2 - 1.15 * aslant;
-      leg(0.3, lower ? far_end * width : near_end * width + swing, 1.5 * (0.7 * s + 0.3 * c) + shingle);
-      leg(0.5, 2 * width + swing / 2, 0.75 * (s + c));
-      leg(0.7, lower ? near_end * width + swing : far_end * width, 1.5 * (0.3 * s + 0.7 * c) - shingle);
+      leg(0.3, (lower ? far_end : near_end) * width, 1.5 * (0.7 * s + 0.3 * c) + shingle);
+      leg(0.5, 2 * width, 0.75 * (s + c));
+      leg(0.7, (lower ? near_end : far_end) * width, 1.5 * (0.3 * s + 0.7 * c) - shingle);
     } else {
       leg(0.5, 2, 0.75 * (s + c));
     }
     head_half(id, side, head + high_share * sign.leg_offset, points);
+  }
+
+  // A loop that lies flat, as in the chain of a bind-off: head and feet are at one level, and both stand
+  // upright on their needles. Its lower leg swings out below the head, its upper leg above the feet; both
+  // stay clear of the heads that it was drawn through until they are past them, then they take the layer of
+  // its own head.
+  void flat_legs(LoopId id, double side, std::vector<TypePoint>& points) const {
+    const LoopSigns& sign = signs_[id.position()];
+    const std::size_t i = id.position();
+    const double lean = leaning(id), ahead = lean > 0 ? 1 : -1, length = 8 * std::abs(lean);
+    const double out = sign.lower_leg + 1.3 * sign.s, in = sign.head_layer + sign.c;
+    const auto leg = [&](double along, double y, double z) {
+      const double share = along / length;
+      const Vec3 base = layout_.lower[i] + (layout_.upper[i] - layout_.lower[i]) * share;
+      points.push_back(point(id, LoopPart::leg, base + Vec3{0, y * sy_, z * r_}));
+    };
+    const double wide = sign.head_spread;
+    if (side * lean > 0) {
+      leg(2 + sign.foot_spread, -0.4, out);
+      leg(3.6, -2.2, out);
+      leg(length - 3.4, -3.2, in);
+      leg(length - 1.5, -3.4, in);
+      head_half(id, side, sign.head_layer, points);
+    } else {
+      leg(1, 4.6, out);
+      leg(3.6, 3.6, out);
+      leg(length - 3.6, 2.2, in);
+      points.push_back(point(id, LoopPart::leg, at_upper(id, -ahead * (2.8 + wide), 0.4, sign.head_layer)));
+      points.push_back(point(id, LoopPart::head,
+                             at_upper(id, -ahead * (1.444 + wide), 1.556 + 0.4 * wide,
+                                      sign.head_layer - crossing_reach * sign.c)));
+    }
   }
 
   // From the crossing of the upper leg with the child's foot to the crossing of the head with the child's

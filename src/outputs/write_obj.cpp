@@ -10,14 +10,14 @@
 namespace loopwright {
 namespace {
 
-// Nine digits: a metre of cloth to a nanometre.
-void put(std::ostream& out, const char* keyword, const Vec3& v) {
+// Nine digits for places: a metre of cloth to a nanometre. Directions need fewer.
+void put(std::ostream& out, const char* keyword, const Vec3& v, int digits = 9) {
   std::array<char, 128> line{};
   char* end = line.data();
   for (const char* c = keyword; *c != 0; ++c) *end++ = *c;
   for (int i = 0; i < 3; ++i) {
     *end++ = ' ';
-    end = std::to_chars(end, line.data() + line.size(), v[i] + 0.0, std::chars_format::general, 9).ptr;
+    end = std::to_chars(end, line.data() + line.size(), v[i] + 0.0, std::chars_format::general, digits).ptr;
   }
   *end++ = '\n';
   out.write(line.data(), end - line.data());
@@ -81,7 +81,7 @@ void write_obj_tubes(const std::filesystem::path& path, const Fabric& fabric, co
   for_each_copy(fabric, options, out, [&](const FabricYarn& yarn, const Vec3& offset) {
     const TubeMesh mesh = tube_mesh(fabric, yarn, options.per_segment, options.sides);
     for (const Vec3& p : mesh.positions) put(out, "v", (p + offset) * fabric.diameter_mm);
-    for (const Vec3& n : mesh.normals) put(out, "vn", n);
+    for (const Vec3& n : mesh.normals) put(out, "vn", n, 5);
     for (const TubeMesh::Triangle& t : mesh.triangles) {
       out << 'f';
       for (std::size_t k = 0; k < 3; ++k)

@@ -8,8 +8,8 @@
 namespace loopwright {
 
 struct ObjOptions {
-  int per_segment = 6;               // polyline steps on a spline segment
-  int sides = 12;                    // corners of a tube's cross-section
+  int per_segment = 4;               // polyline steps on a spline segment
+  int sides = 8;                     // corners of a tube's cross-section
   std::array<int, 2> repeats{1, 1};  // periodic fabrics: cells along each lattice vector; 1 x 1 otherwise
 };
 

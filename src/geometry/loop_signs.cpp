@@ -49,7 +49,7 @@ void clear_parents(const YarnGraph& graph, LoopId id, const std::vector<LoopId>&
   for (const LoopId other : stack) {
     if (std::find(loop.parents.begin(), loop.parents.end(), other) != loop.parents.end()) continue;
     const LoopSigns& of = signs[other.position()];
-    const double layer = s * of.head_layer, c = std::abs(of.c) * crossing_reach;
+    const double layer = s * of.head_layer, c = s * of.c * crossing_reach;
     if (layer < nearest) behind = std::max(behind, layer + c);
     if (layer > farthest) before = std::min(before, layer - c);
   }

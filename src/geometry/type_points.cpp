@@ -135,9 +135,9 @@ class LoopPlacer {
     const double wide = sign.head_spread;
     if (side * lean > 0) {
       leg(2 + sign.foot_spread, -0.4, out);
-      leg(3.6, -2.2, out);
-      leg(length - 3.4, -3.2, in);
-      leg(length - 1.5, -3.4, in);
+      leg(3.6, -1.9, out);
+      leg(length - 3.4, -1.8, in);
+      leg(length, -1.8, in);
       head_half(id, side, sign.head_layer, points);
     } else {
       leg(1, 4.6, out);

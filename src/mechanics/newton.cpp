@@ -68,7 +68,7 @@ NewtonResult newton(const YarnModel& model, YarnState& state, const NewtonOption
     const double t_factor = since(t0);
     const double slope = dot(gradient, step);
     const YarnState target = assembly.moved(state, step, 1);
-    const SafeStep safe = safe_step(model, assembly, state, target, range, outer, 0.5);
+    const SafeStep safe = safe_step(model, assembly, state, target, range, outer, 0.7);
     double scale = safe.scale;
     const double energy = result.energy.total();
     double next_energy = 0;

@@ -64,6 +64,13 @@ class CellCutter {
     return found->second;
   }
 
+  // The same without the error: invalid where there is none.
+  CellImage image_of(LoopId id) const {
+    const auto found = cell_.find(places_[id.position()]);
+    if (found == cell_.end()) return {};
+    return {found->second, shifts_[id.position()]};
+  }
+
   LoopId image(LoopId id, const Shift& wanted) const {
     for (std::size_t i = 0; i < places_.size(); ++i)
       if (shifts_[i] == wanted && places_[i] == places_[id.position()]) return LoopId(i);
@@ -187,6 +194,13 @@ YarnCurves cut_periodic_cell(const YarnGraph& graph, const GeometryOptions& opti
   curves.wales = wales_of(graph, cutter.loops());
   curves.courses = courses_of(piece.layout, cutter.loops(), curves.wales);
   return curves;
+}
+
+std::vector<CellImage> cell_images(const YarnGraph& graph, const CellRange& range) {
+  const CellCutter cutter(graph, range);
+  std::vector<CellImage> images;
+  for (std::size_t i = 0; i < graph.loops.size(); ++i) images.push_back(cutter.image_of(LoopId(i)));
+  return images;
 }
 
 }  // namespace loopwright

@@ -95,12 +95,19 @@ class LoopPlacer {
       flat_legs(id, side, points);
       return;
     }
-    const auto leg = [&](double share, double across, double bulge) {
-      const double layer = std::abs(foot) > 0 ? foot + (head - foot) * share : head;
-      points.push_back(
-          point(id, LoopPart::leg, on_leg(id, share, side * across, bulge + layer + sign.leg_offset)));
+    // `rise`: how far the leg has come from the side where its feet come out (s, at O) to that where its
+    // children find it (c, at P).
+    const auto leg = [&](double share, double across, double rise, double more) {
+      const double layer = std::abs(foot) > 0 ? foot + (head - foot) * rise : head;
+      Vec3 place = on_leg(id, share, side * across, 0);
+      place.z = layout_.lower[id.position()].z * (1 - rise) + layout_.upper[id.position()].z * rise +
+                (1.5 * (s * (1 - rise) + c * rise) + layer + sign.leg_offset + more) * r_;
+      points.push_back(point(id, LoopPart::leg, place));
     };
-    if (const double lean = leaning(id); std::abs(lean) > 0.4) {
+    // A head that was moved or that lies in a stack meets its children's sinkers and the other legs of the
+    // stack from the middle of the leg on; there it must be on its children's side already.
+    const double lean = leaning(id);
+    if (std::abs(lean) > 0.4) {
       const bool lower = side * lean > 0;
       const double steep = steepness(id);
       // Loops that lean side by side are the nearer to each other the more they lean, and so are their legs;
@@ -109,11 +116,14 @@ class LoopPlacer {
       const double aslant = std::clamp(3.6 * (1 - 2 * steep), 0.0, 1.0);
       const double shingle = (lower ? 0.6 : -0.6) * aslant;
       const double near_end = 2 - 1.35 * aslant, far_end = 2 - 1.15 * aslant;
-      leg(0.3, (lower ? far_end : near_end) * width, 1.5 * (0.7 * s + 0.3 * c) + shingle);
-      leg(0.5, 2 * width, 0.75 * (s + c));
-      leg(0.7, (lower ? near_end : far_end) * width, 1.5 * (0.3 * s + 0.7 * c) - shingle);
+      leg(0.3, (lower ? far_end : near_end) * width, 0.05, shingle);
+      leg(0.5, 2 * width, 0.85, 0);
+      leg(0.7, (lower ? near_end : far_end) * width, 1, -shingle);
+    } else if (graph_.loop(id).head_count > 1) {
+      leg(0.35, 1.8, 0.2, 0);
+      leg(0.55, 2.1, 0.9, 0);
     } else {
-      leg(0.5, 2, 0.75 * (s + c));
+      leg(0.5, 2, 0.5, 0);
     }
     head_half(id, side, head + high_share * sign.leg_offset, points);
   }

@@ -9,20 +9,20 @@
 namespace loopwright {
 namespace {
 
-// A tube: two layers, and at most of its turns the yarn goes over to the other bed.
+// A tube: two layers, each knitted for itself, and at most turns the yarn goes over to the other bed.
 bool is_tube(const YarnGraph& graph, const Layout& layout) {
   const auto faced = std::count(layout.faced.begin(), layout.faced.end(), 1);
   if (2 * static_cast<std::size_t>(faced) < graph.loops.size()) return false;
-  int turns = 0, changes = 0;
+  int turns = 0, turns_over = 0, steps = 0, steps_over = 0;
   for (const GraphYarn& yarn : graph.yarns)
     for (std::size_t k = 0; k + 1 < yarn.loops.size(); ++k) {
       const Loop& from = graph.loop(yarn.loops[k]);
       const Loop& to = graph.loop(yarn.loops[k + 1]);
-      if (from.direction == to.direction) continue;
-      ++turns;
-      if (is_front(from.bed) != is_front(to.bed)) ++changes;
+      const bool over = is_front(from.bed) != is_front(to.bed);
+      (from.direction == to.direction ? steps : turns) += 1;
+      if (over) (from.direction == to.direction ? steps_over : turns_over) += 1;
     }
-  return turns > 0 && 10 * changes > 6 * turns;
+  return turns > 0 && 10 * turns_over > 6 * turns && 10 * steps_over < steps;
 }
 
 }  // namespace

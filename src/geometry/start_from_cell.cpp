@@ -1,0 +1,93 @@
+#include "geometry/start_from_cell.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "geometry/centreline.hpp"
+#include "geometry/interlacing.hpp"
+
+namespace loopwright {
+namespace {
+
+// A loop of the piece and its image in the cell.
+struct ImagedSpan {
+  const LoopSpan* span = nullptr;
+  const LoopSpan* image = nullptr;
+  Vec3 shift;
+  bool reversed = false;  // the courses run in opposite directions
+};
+
+// Place in the cell of parameter t of the piece's yarn: the same share of the half loop before or after the
+// apex.
+Vec3 imaged_place(const Fabric& cell, const ImagedSpan& s, double t) {
+  const auto share = [](double from, double to, double at) {
+    return to > from ? (at - from) / (to - from) : 0;
+  };
+  const LoopSpan &a = *s.span, &b = *s.image;
+  const bool first_half = t < a.apex;
+  const double f = first_half ? share(a.begin, a.apex, t) : share(a.apex, a.end, t);
+  double at = first_half ? b.begin + f * (b.apex - b.begin) : b.apex + f * (b.end - b.apex);
+  if (s.reversed) at = first_half ? b.end - f * (b.end - b.apex) : b.apex - f * (b.apex - b.begin);
+  return position(cell, cell.yarns[static_cast<std::size_t>(b.yarn)], at) + s.shift;
+}
+
+// Control points of the open spline through n + 1 places at whole parameters, without curvature at its ends.
+std::vector<Vec3> spline_through(const std::vector<Vec3>& places) {
+  const std::size_t n = places.size();
+  // q_(k) + 4 q_(k+1) + q_(k+2) = 6 p_k; zero curvature makes q_1 = p_0 and q_(n) = p_(n-1).
+  std::vector<double> lower(n, 1), diagonal(n, 4), upper(n, 1);
+  std::vector<Vec3> right(n);
+  for (std::size_t k = 0; k < n; ++k) right[k] = 6 * places[k];
+  for (const std::size_t end : {std::size_t{0}, n - 1}) {
+    lower[end] = upper[end] = 0;
+    diagonal[end] = 1;
+    right[end] = places[end];
+  }
+  std::vector<Vec3> inner = solve_tridiagonal(lower, diagonal, upper, right), q;
+  q.push_back(2 * inner[0] - inner[1]);
+  q.insert(q.end(), inner.begin(), inner.end());
+  q.push_back(2 * inner[n - 1] - inner[n - 2]);
+  return q;
+}
+
+}  // namespace
+
+std::optional<Fabric> start_from_cell(const Fabric& piece, const Fabric& cell, const YarnGraph& graph,
+                                      const CellRange& range) {
+  if (piece.periodic || !cell.periodic || !(cell.wales > 0) || !(cell.courses > 0)) return std::nullopt;
+  const std::vector<CellImage> images = cell_images(graph, range);
+  std::map<LoopId, const LoopSpan*> cell_spans;
+  for (const LoopSpan& s : cell.loops) cell_spans[s.loop] = &s;
+
+  std::vector<std::vector<ImagedSpan>> spans(piece.yarns.size());
+  for (const LoopSpan& s : piece.loops) {
+    const CellImage& image = images[s.loop.position()];
+    const auto found = cell_spans.find(image.loop);
+    if (!image.loop.valid() || found == cell_spans.end()) return std::nullopt;
+    spans[static_cast<std::size_t>(s.yarn)].push_back(
+        {&s, found->second, cell.lattice(image.shift[0], image.shift[1]),
+         graph.loop(s.loop).direction != graph.loop(image.loop).direction});
+  }
+
+  Fabric started = piece;
+  for (std::size_t y = 0; y < piece.yarns.size(); ++y) {
+    auto& on_yarn = spans[y];
+    if (on_yarn.empty()) return std::nullopt;
+    std::sort(on_yarn.begin(), on_yarn.end(),
+              [](const ImagedSpan& a, const ImagedSpan& b) { return a.span->begin < b.span->begin; });
+    std::vector<Vec3> places;
+    std::size_t at = 0;
+    for (int k = 0; k <= piece.yarns[y].segments(); ++k) {
+      while (at + 1 < on_yarn.size() && k >= on_yarn[at + 1].span->begin) ++at;
+      places.push_back(imaged_place(cell, on_yarn[at], k));
+    }
+    started.yarns[y].control_points = spline_through(places);
+  }
+  started.width = piece.wales * cell.width / cell.wales;
+  started.height = piece.courses * cell.height / cell.courses;
+  const InterlacingCheck check = check_interlacings(started);
+  if (check.intact != check.expected) return std::nullopt;
+  return started;
+}
+
+}  // namespace loopwright

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "mechanics/linear/conjugate_gradient.hpp"
 #include "mechanics/safe_step.hpp"
 
 namespace loopwright {
@@ -31,6 +32,8 @@ NewtonResult newton(const YarnModel& model, YarnState& state, const NewtonOption
   Unknowns gradient, step;
   const double outer = model.contact.outer;
   double shift = first_shift, loose = 0.6;  // loose: how far past contact the pair list reaches, in d
+  constexpr int most_inner = 24, few_nodes = 1000;  // small fabrics are factored anew at every step
+  bool lagged = false;  // the factor at hand may serve as preconditioner
   const bool trace = std::getenv("LOOPWRIGHT_TRACE") != nullptr;
 
   for (result.iterations = 0;; ++result.iterations) {
@@ -46,22 +49,36 @@ NewtonResult newton(const YarnModel& model, YarnState& state, const NewtonOption
     if (options.on_iteration && !options.on_iteration(result.iterations, result.residual)) result.stopped = true;
     if (result.converged || result.stopped || result.iterations >= options.most_iterations) break;
 
-    // Factor H + shift, raising the shift until it is positive definite.
     assembly.metric(hessian);
     hessian.measure_metric = {1, 1, 1};
     const double t_metric = since(t0);
-    int raised = 0;
-    while (true) {
+    int raised = 0, inner = 0;
+    // The factor of an earlier step serves as preconditioner while it is good: on large pieces a factor costs as much
+    // as tens of products and solves.
+    bool solved = false;
+    if (lagged && model.nodes > few_nodes) {
+      const double accuracy = std::clamp(0.3 * result.residual, 1e-3, 0.05);
+      const ConjugateGradientResult cg = conjugate_gradient(hessian, shift, cholesky, gradient, accuracy, most_inner, step);
+      inner = cg.iterations;
+      solved = cg.converged;
+    }
+    lagged = solved && inner <= most_inner / 2;
+    while (!solved) {
+      // Factor H + shift D, raising the shift until it is positive definite.
       ++result.factorisations;
-      if (cholesky.factor(hessian, shift)) break;
-      shift = std::max(4 * shift, 1e-4);
-      if (++raised > 60) {
-        result.shift = shift;
-        return result;
+      if (cholesky.factor(hessian, shift)) {
+        cholesky.solve(gradient, step);
+        ++inner;
+        solved = lagged = true;
+      } else {
+        shift = std::max(4 * shift, 1e-4);
+        if (++raised > 60) {
+          result.shift = shift;
+          return result;
+        }
       }
     }
-    cholesky.solve(gradient, step);
-    ++result.linear_iterations;
+    result.linear_iterations += inner;
     for (Vec3& v : step.u) v = -v;
     for (double& v : step.g) v = -v;
 
@@ -85,9 +102,9 @@ NewtonResult newton(const YarnModel& model, YarnState& state, const NewtonOption
       scale *= 0.5;
     }
     if (trace)
-      std::fprintf(stderr, "  it %3d E %.9g (b %.6g c %.4g s %.3g) res %.3e mres %.2e shift %.2e raised %d scale %.3g cuts %d ratio %.3g loose %.3g W %.4f H %.4f pairs %zu  ms %.0f %.0f %.0f %.0f nnz %.3g\n",
+      std::fprintf(stderr, "  it %3d E %.9g (b %.6g c %.4g s %.3g) res %.3e mres %.2e shift %.2e raised %d cg %d scale %.3g cuts %d ratio %.3g loose %.3g W %.4f H %.4f pairs %zu  ms %.0f %.0f %.0f %.0f nnz %.3g\n",
                    result.iterations, energy, result.energy.bend, result.energy.contact, result.energy.stretch, result.residual,
-                   result.measure_residual, shift, raised, scale, cuts, safe.pair_ratio, safe.loose_motion, state.width, state.height,
+                   result.measure_residual, shift, raised, inner, scale, cuts, safe.pair_ratio, safe.loose_motion, state.width, state.height,
                    assembly.pairs().size(), t_assembly, t_metric, t_factor, since(t0), cholesky.factor_entries());
     if (scale == 0) {
       if (shift > 1e12) break;

@@ -48,7 +48,7 @@ void axpy(double s, const Unknowns& x, Unknowns& y) {
   for (std::size_t k = 0; k < 3; ++k) y.g[k] += s * x.g[k];
 }
 
-void multiply(const BlockMatrix& matrix, const Unknowns& x, Unknowns& y) {
+void multiply(const BlockMatrix& matrix, double shift, const Unknowns& x, Unknowns& y) {
   const auto rows = static_cast<std::size_t>(matrix.rows());
   y.u.resize(rows);
   const int chunks = chunk_count(rows);
@@ -66,6 +66,7 @@ void multiply(const BlockMatrix& matrix, const Unknowns& x, Unknowns& y) {
         sum.x += b[0] * v.x + b[1] * v.y + b[2] * v.z;
         sum.y += b[3] * v.x + b[4] * v.y + b[5] * v.z;
         sum.z += b[6] * v.x + b[7] * v.y + b[8] * v.z;
+        if (shift != 0) sum += (shift * matrix.metric[k]) * v;
       }
       const Block& e = matrix.border[i];
       sum.x += e[0] * x.g[0] + e[1] * x.g[1] + e[2] * x.g[2];
@@ -81,6 +82,8 @@ void multiply(const BlockMatrix& matrix, const Unknowns& x, Unknowns& y) {
     for (std::size_t k = 0; k < 3; ++k) y.g[k] += g[k];
   for (std::size_t k = 0; k < 3; ++k)
     for (std::size_t l = 0; l < 3; ++l) y.g[k] += matrix.corner[3 * k + l] * x.g[l];
+  if (shift != 0)
+    for (std::size_t k = 0; k < 3; ++k) y.g[k] += shift * matrix.measure_metric[k] * x.g[k];
 }
 
 }  // namespace loopwright

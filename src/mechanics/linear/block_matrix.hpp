@@ -40,7 +40,8 @@ struct Unknowns {
 double dot(const Unknowns& a, const Unknowns& b);
 void axpy(double s, const Unknowns& x, Unknowns& y);  // y += s x
 
-// y = A x (with border and corner).
-void multiply(const BlockMatrix& matrix, const Unknowns& x, Unknowns& y);
+// y = (A + shift D) x, with border and corner; D is the metric.
+void multiply(const BlockMatrix& matrix, double shift, const Unknowns& x, Unknowns& y);
+inline void multiply(const BlockMatrix& matrix, const Unknowns& x, Unknowns& y) { multiply(matrix, 0, x, y); }
 
 }  // namespace loopwright

@@ -12,7 +12,7 @@ namespace {
 constexpr int samples_per_segment = 4;
 // Of a loop's length, from its top: where the neck of its head is, how far its foot reaches, how far yarn may
 // slide.
-constexpr double neck = 0.38, foot_reach = 0.56, most_slide = 0.42, climb_window = 0.1;
+constexpr double neck = 0.38, foot_reach = 0.56, most_slide = 0.42, climb_window = 0.1, next_foot = 0.2;
 
 // One yarn as a polyline that can be asked beyond its ends where it is periodic.
 class SampledYarn {
@@ -47,6 +47,8 @@ struct LoopWindow {
   int begin = 0, apex = 0, end = 0;        // nominal, in samples
   double half_before = 0, half_after = 0;  // of the loop's own yarn, floats left out
   Direction direction = Direction::right;
+  LoopId id, previous, next;  // itself and its neighbours in the yarn
+  std::vector<LoopId> children;
   int order = 0;  // place in Fabric::loops
 };
 
@@ -83,19 +85,20 @@ std::vector<Vec3> piece(const SampledYarn& yarn, int first, int last, const Vec3
   return points;
 }
 
-// A closed polygon with a fan of triangles from its centre.
+// A closed polygon with a fan of triangles. Its centre is that of the head, where children are drawn through,
+// so that the surface stays near the head's plane even where the legs lean away or change the side.
 class Fan {
  public:
   explicit Fan(std::vector<Vec3> rim) : rim_(std::move(rim)), low_(rim_.front()), high_(rim_.front()) {
-    Vec3 sum;
-    for (const Vec3& p : rim_) {
-      sum += p;
+    for (const Vec3& p : rim_)
       for (int k = 0; k < 3; ++k) {
         low_[k] = std::min(low_[k], p[k]);
         high_[k] = std::max(high_[k], p[k]);
       }
-    }
-    centre_ = sum / static_cast<double>(rim_.size());
+    const std::size_t legs = rim_.size() / 4;
+    Vec3 sum;
+    for (std::size_t i = legs; i < rim_.size() - legs; ++i) sum += rim_[i];
+    centre_ = sum / static_cast<double>(rim_.size() - 2 * legs);
   }
 
   // Signed number of passes of the polyline; + along the right-hand normal of the rim's sense. A zero counts
@@ -139,15 +142,26 @@ class Fan {
   Vec3 low_, high_, centre_;
 };
 
-// With the parent's head at `head` and the top of the child's at `child_head`, in samples.
-bool is_intact(const LoopWindow& parent, int head, const LoopWindow& child, int child_head, const Vec3& moved,
-               int sign) {
+// With the parent's head at `head` and the top of the child's at `child_head`, in samples. A foot is followed
+// to the middle of its sinker and, `beyond`, into the next loop's foot: where the parent's head was moved
+// aside, the middle of the sinker lies between its legs, and only what comes after it is surely outside.
+bool is_intact(const LoopWindow& parent, int head, const LoopWindow& child, int child_head, bool beyond,
+               const Vec3& moved, int sign) {
   const double neck_share = neck / 0.5;
   const Fan fan(piece(*parent.yarn, head - static_cast<int>(std::lround(neck_share * parent.half_before)),
                       head + static_cast<int>(std::lround(neck_share * parent.half_after)), Vec3{}));
   const int slide = child_head - child.apex;
-  const int first = std::max(child.begin + slide, child_head - static_cast<int>(foot_reach * child.loop));
-  const int last = std::min(child.end + slide, child_head + static_cast<int>(foot_reach * child.loop));
+  const double reach = foot_reach * child.loop, more = next_foot * child.loop;
+  const auto related = [&](LoopId neighbour) {  // the parent itself, or drawn through it as well
+    return neighbour == parent.id ||
+           std::find(parent.children.begin(), parent.children.end(), neighbour) != parent.children.end();
+  };
+  const double before = beyond && !related(child.previous) ? more : 0,
+               after = beyond && !related(child.next) ? more : 0;
+  const int first =
+      static_cast<int>(std::max(static_cast<double>(child.begin + slide), child_head - reach) - before);
+  const int last =
+      static_cast<int>(std::min(static_cast<double>(child.end + slide), child_head + reach) + after);
   // The normal that the sense of the yarn gives to the rim points to the front or to the rear.
   const int sense = parent.direction == Direction::left ? 1 : -1;
   return sense * fan.passes(piece(*child.yarn, first, child_head, moved)) == sign &&
@@ -221,8 +235,15 @@ InterlacingCheck check_interlacings(const Fabric& fabric) {
     window.half_after = std::min<double>(window.end - window.apex, window.loop / 2);
     window.direction = span.direction;
     window.order = static_cast<int>(k);
+    window.id = span.loop;
+    if (k > 0 && fabric.loops[k - 1].yarn == span.yarn) window.previous = fabric.loops[k - 1].loop;
+    if (k + 1 < fabric.loops.size() && fabric.loops[k + 1].yarn == span.yarn)
+      window.next = fabric.loops[k + 1].loop;
     windows.emplace(span.loop, window);
   }
+  for (const PlacedInterlacing& interlacing : fabric.interlacings)
+    if (const auto parent = windows.find(interlacing.parent); parent != windows.end())
+      parent->second.children.push_back(interlacing.child);
   const std::vector<Vec3> directions = wale_directions(fabric, windows);
   for (std::size_t k = 0; k < fabric.interlacings.size(); ++k) {
     const PlacedInterlacing& interlacing = fabric.interlacings[k];
@@ -234,9 +255,11 @@ InterlacingCheck check_interlacings(const Fabric& fabric) {
       const Vec3 moved = fabric.lattice(interlacing.shift[0], interlacing.shift[1]);
       // Where the heads were fitted; if that is not it, yarn may have slid, and they are found anew.
       const LoopWindow &above = child->second, &below = parent->second;
-      intact = is_intact(below, below.apex, above, above.apex, moved, interlacing.sign) ||
-               is_intact(below, top_of_head(below, up), above, top_of_head(above, child_up), moved,
-                         interlacing.sign);
+      const int head = top_of_head(below, up), child_head = top_of_head(above, child_up);
+      intact = false;
+      for (const bool beyond : {false, true})
+        intact = intact || is_intact(below, below.apex, above, above.apex, beyond, moved, interlacing.sign) ||
+                 is_intact(below, head, above, child_head, beyond, moved, interlacing.sign);
     }
     if (intact)
       ++check.intact;

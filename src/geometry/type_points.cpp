@@ -117,11 +117,11 @@ class LoopPlacer {
       const double shingle = (lower ? 0.6 : -0.6) * aslant;
       const double near_end = 2 - 1.35 * aslant, far_end = 2 - 1.15 * aslant;
       leg(0.3, (lower ? far_end : near_end) * width, 0.05, shingle);
-      leg(0.5, 2 * width, 0.85, 0);
+      leg(0.5, 2 * width, 1, 0);
       leg(0.7, (lower ? near_end : far_end) * width, 1, -shingle);
     } else if (graph_.loop(id).head_count > 1) {
       leg(0.35, 1.8, 0.2, 0);
-      leg(0.55, 2.1, 0.9, 0);
+      leg(0.55, 2.1, 1, 0);
     } else {
       leg(0.5, 2, 0.5, 0);
     }

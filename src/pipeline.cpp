@@ -5,6 +5,7 @@
 
 #include "geometry/fit_fabric.hpp"
 #include "geometry/periodic_cell.hpp"
+#include "geometry/start_from_cell.hpp"
 #include "geometry/window.hpp"
 #include "machine/run_machine.hpp"
 #include "mechanics/yarn_material.hpp"
@@ -68,10 +69,34 @@ Fabric first_geometry(const Knitting& knitting, const PieceRequest& request) {
   return fabric;
 }
 
-RelaxOptions relax_options(const Fabric& fabric, const Program& program) {
+RelaxOptions relax_options(const Fabric& fabric, const Program& program, const PieceRequest& request) {
+  constexpr double usual_friction = 0.25;
+  const YarnData& yarn = reference_yarn(program);
   RelaxOptions options;
-  options.model.material = yarn_material(reference_yarn(program), fabric.diameter_mm);
+  options.model.material = yarn_material(yarn, fabric.diameter_mm);
+  options.model.material.friction = request.friction.value_or(yarn.friction_coefficient.value_or(usual_friction));
   return options;
+}
+
+std::optional<Fabric> start_from_relaxed_cell(const Knitting& knitting, const PieceRequest& request, const Fabric& first,
+                                              const RelaxOptions& options) {
+  const Program& program = knitting.program;
+  if (first.periodic || request.window || program.window.needles == 0 || program.repeat_starts.size() < 2) return std::nullopt;
+  const GeometryOptions geometry = make_geometry_options(program);
+  std::optional<Fabric> cell;
+  CellRange range;
+  try {
+    range = cell_range(program);
+    const PlacedPiece piece = place_type_points(knitting.graph, geometry);
+    cell = fit_fabric(cut_periodic_cell(knitting.graph, geometry, piece, range), knitting.graph, geometry);
+  } catch (const std::invalid_argument&) {
+    return std::nullopt;  // the notation does not close into a cell
+  }
+  RelaxOptions cell_options = options;
+  cell_options.grow_in = true;
+  const RelaxResult relaxed = relax(*cell, cell_options);
+  if (!relaxed.converged) return std::nullopt;
+  return start_from_cell(first, relaxed.fabric, knitting.graph, range);
 }
 
 RelaxOptions relax_options(const State& state) {
@@ -90,6 +115,7 @@ RelaxOptions relax_options(const State& state) {
   material.contact.core = number("contact_core");
   material.contact.stiffness = number("contact_stiffness");
   material.contact.exponent = number("contact_exponent");
+  material.friction = number("friction");
   options.grow_in = number("radius") < 1;
   return options;
 }
@@ -150,6 +176,7 @@ State saved_state(const Fabric& fabric, const RelaxOptions& options, double radi
                    {"contact_core", material.contact.core},
                    {"contact_stiffness", material.contact.stiffness},
                    {"contact_exponent", material.contact.exponent},
+                   {"friction", material.friction},
                    {"radius", radius}};
   return state;
 }

@@ -32,7 +32,7 @@ struct PictureRequest {
 
 struct RelaxCommand {
   std::string file, out, json, render;
-  PieceRequest piece;
+  PieceRequest piece{.start_from_cell = true};
   PictureRequest picture;
   int threads = 0;  // 0: all
   std::optional<int> most_iterations;

@@ -78,6 +78,13 @@ void add_commands(CLI::App& app, Commands& commands, Action& action) {
   relax->add_option("--render", commands.relax.render, "Draw the relaxed cloth")->type_name("PNG");
   add_picture_options(*relax, commands.relax.picture);
   relax
+      ->add_option("--friction", commands.relax.piece.friction,
+                   "Friction coefficient of yarn on yarn (0: frictionless; default: the yarn's own, else 0.25)")
+      ->type_name("MU")
+      ->check(CLI::Range(0.0, 5.0));
+  relax->add_flag("!--from-template", commands.relax.piece.start_from_cell,
+                  "Start a held piece from the first geometry, not from its relaxed repeat");
+  relax
       ->add_option("--threads", commands.relax.threads,
                    "Threads to use, 0 for all (results do not depend on it)")
       ->check(CLI::Range(0, 4096))

@@ -19,7 +19,7 @@ struct RelaxProgress {
 struct RelaxOptions {
   ModelOptions model;
   double tolerance = 2e-4;   // largest force on a control point that counts as rest, B/d^2
-  int most_iterations = 600;
+  int most_iterations = 1500;
   bool grow_in = true;       // start with a thin yarn; false: the fabric is a saved state at full radius
   // Finite pieces lie between two plates, this far (in d) beyond the first geometry's centrelines: plain cloth curls
   // otherwise. Negative: no plates. Periodic cells need none.

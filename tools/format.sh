@@ -7,7 +7,7 @@ if [[ ${1:-} != --check ]]; then
   xargs clang-format-14 -i <<< "$sources"
   exit
 fi
-faults=$(xargs clang-format-14 --dry-run -Werror <<< "$sources" 2>&1 | sed -n 's/^\([^: ]*\):[0-9]*:[0-9]*: error: .*/\1/p' | sort -u)
+faults=$( (xargs clang-format-14 --dry-run -Werror <<< "$sources" 2>&1 || true) | sed -n 's/^\([^: ]*\):[0-9]*:[0-9]*: error: .*/\1/p' | sort -u)
 [[ -z $faults ]] && exit
 echo "not formatted (tools/format.sh does it):"
 echo "$faults"

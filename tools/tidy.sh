@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # Runs clang-tidy (checks in .clang-tidy) over the sources of stages and apps, or over the files given.
-# Needs a configured build/ for the compile commands: ./test makes one.
+# Needs the compile commands of a configured build folder: build/, which ./test makes, or LOOPWRIGHT_BUILD.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 if (($# == 0)); then
   mapfile -t files < <(find src apps -name '*.cpp' | sort)
   set -- "${files[@]}"
 fi
-printf '%s\n' "$@" | xargs -P 2 -n 1 clang-tidy-14 -p build --quiet --warnings-as-errors='*'
+printf '%s\n' "$@" | xargs -P 2 -n 1 clang-tidy-14 -p "${LOOPWRIGHT_BUILD:-build}" --quiet \
+  --extra-arg=-Wno-unknown-warning-option --warnings-as-errors='*'

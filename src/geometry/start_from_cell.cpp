@@ -1,6 +1,7 @@
 #include "geometry/start_from_cell.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "geometry/centreline.hpp"
@@ -50,6 +51,24 @@ std::vector<Vec3> spline_through(const std::vector<Vec3>& places) {
   return q;
 }
 
+// The frame is the outermost ring of loops, held whole in the shape that they have in the cell: the piece's inside then has the
+// neighbours that it would have in an endless cloth. (A template's few held points would leave border loops half free.)
+void hold_border_loops(Fabric& fabric) {
+  std::vector<std::vector<std::uint8_t>> held;
+  for (const FabricYarn& yarn : fabric.yarns) held.push_back(yarn.held);
+  for (const LoopSpan& s : fabric.loops) {
+    const auto y = static_cast<std::size_t>(s.yarn);
+    FabricYarn& yarn = fabric.yarns[y];
+    // Control point i weighs most at parameter i - 1.
+    const auto count = static_cast<int>(yarn.control_points.size());
+    const int first = std::clamp(static_cast<int>(std::ceil(s.begin)) + 1, 0, count);
+    const int last = std::clamp(static_cast<int>(std::floor(s.end)) + 1, -1, count - 1);
+    bool border = false;
+    for (int i = first; i <= last; ++i) border = border || held[y][static_cast<std::size_t>(i)] != 0;
+    for (int i = first; border && i <= last; ++i) yarn.held[static_cast<std::size_t>(i)] = 1;
+  }
+}
+
 }  // namespace
 
 std::optional<Fabric> start_from_cell(const Fabric& piece, const Fabric& cell, const YarnGraph& graph,
@@ -85,6 +104,7 @@ std::optional<Fabric> start_from_cell(const Fabric& piece, const Fabric& cell, c
   }
   started.width = piece.wales * cell.width / cell.wales;
   started.height = piece.courses * cell.height / cell.courses;
+  hold_border_loops(started);
   const InterlacingCheck check = check_interlacings(started);
   if (check.intact != check.expected) return std::nullopt;
   return started;

@@ -1,5 +1,6 @@
 // A piece that starts from its relaxed periodic cell instead of from the template: every loop takes the shape and the
-// place that its image has in the cell, so that the piece's inside is at rest before the first step.
+// place that its image has in the cell, so that the piece's inside is at rest before the first step. The loops of its
+// border are held whole: they are the frame, at the cell's pitch.
 #pragma once
 #include <optional>
 

@@ -7,6 +7,7 @@
 #include <cstdlib>
 
 #include "mechanics/linear/conjugate_gradient.hpp"
+#include "mechanics/linear/schwarz.hpp"
 #include "mechanics/safe_step.hpp"
 
 namespace loopwright {
@@ -28,11 +29,16 @@ NewtonResult newton(const YarnModel& model, YarnState& state, const NewtonOption
   NewtonResult result;
   Assembly assembly(model);
   Cholesky cholesky;
+  Schwarz schwarz;
   BlockMatrix hessian;
   Unknowns gradient, step;
   const double outer = model.contact.outer;
   double shift = first_shift, loose = 0.6;  // loose: how far past contact the pair list reaches, in d
-  constexpr int most_inner = 24, few_nodes = 1000;  // small fabrics are factored anew at every step
+  constexpr int most_inner = 24, most_patched = 200, patch_nodes = 1200;
+  constexpr int few_nodes = 1000;  // small fabrics are factored anew at every step
+  const bool patched = model.nodes > 8000 && !model.periodic;
+  bool fresh = false;
+  int usual_inner = 40;
   bool lagged = false;  // the factor at hand may serve as preconditioner
   const bool trace = std::getenv("LOOPWRIGHT_TRACE") != nullptr;
 
@@ -53,16 +59,46 @@ NewtonResult newton(const YarnModel& model, YarnState& state, const NewtonOption
     hessian.measure_metric = {1, 1, 1};
     const double t_metric = since(t0);
     int raised = 0, inner = 0;
-    // The factor of an earlier step serves as preconditioner while it is good: on large pieces a factor costs as much
-    // as tens of products and solves.
     bool solved = false;
-    if (lagged && model.nodes > few_nodes) {
-      const double accuracy = std::clamp(0.3 * result.residual, 1e-3, 0.05);
-      const ConjugateGradientResult cg = conjugate_gradient(hessian, shift, cholesky, gradient, accuracy, most_inner, step);
+    const double accuracy = std::clamp(0.3 * result.residual, 1e-3, 0.05);
+    if (patched) {
+      // Large fabrics: conjugate gradients with a Schwarz preconditioner, factored anew when it has grown stale.
+      if (!schwarz.ready()) schwarz.set_patches(state.nodes, model.held, hessian, patch_nodes);
+      while (!solved) {
+        if (!lagged) {
+          ++result.factorisations;
+          lagged = schwarz.factor(hessian, shift);
+          fresh = true;
+        }
+        ConjugateGradientResult cg;
+        if (lagged)
+          cg = conjugate_gradient(hessian, shift, [&](const Unknowns& r, Unknowns& z) { schwarz.solve(r, z); }, gradient, accuracy,
+                                  fresh ? most_patched : std::min(most_patched, 2 * usual_inner + 10), step);
+        inner += cg.iterations;
+        solved = cg.converged || (fresh && lagged && !cg.indefinite);
+        if (fresh && solved) usual_inner = cg.iterations;
+        if (!solved) {
+          if (!lagged || (fresh && cg.indefinite)) {
+            shift = std::max(4 * shift, 1e-4);
+            if (++raised > 60) {
+              result.shift = shift;
+              return result;
+            }
+          }
+          lagged = false;
+        }
+        fresh = false;
+      }
+    }
+    // The factor of an earlier step serves as preconditioner while it is good: on middling pieces a factor costs as much
+    // as tens of products and solves.
+    else if (lagged && model.nodes > few_nodes) {
+      const ConjugateGradientResult cg = conjugate_gradient(
+          hessian, shift, [&](const Unknowns& r, Unknowns& z) { cholesky.solve(r, z); }, gradient, accuracy, most_inner, step);
       inner = cg.iterations;
       solved = cg.converged;
+      lagged = solved && inner <= most_inner / 2;
     }
-    lagged = solved && inner <= most_inner / 2;
     while (!solved) {
       // Factor H + shift D, raising the shift until it is positive definite.
       ++result.factorisations;

@@ -63,7 +63,7 @@ RelaxResult relax(const Fabric& fabric, const RelaxOptions& options) {
   const double outer = full.contact.outer;
 
   NewtonResult newton_result;
-  double shift = options.grow_in ? 1.0 : 1e-3;
+  double shift = 1.0;
   const auto run = [&](const YarnModel& model, double radius, double tolerance, int iterations) {
     NewtonOptions newton_options;
     newton_options.tolerance = tolerance;

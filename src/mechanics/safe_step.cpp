@@ -9,17 +9,35 @@
 namespace loopwright {
 namespace {
 
-// Least-squares affine map of the displacement s_i ~ T x_i + t over control points; returns the largest |s_i - T x_i - t|.
-// The points' own 4 x 4 moment matrix is solved by Gaussian elimination with a small ridge (flat pieces have no z extent).
-double motion_beyond_affine(const YarnState& state, const YarnState& target) {
+// A step taken apart into an affine map x -> x + T x + t of all space and what is left.
+struct AffineMotion {
+  double in_plane = 0, across = 0;  // norms of the columns x, y of T, and of its column z
+  double thickness = 0;             // of the fabric along z
+  double loose = 0;                 // the largest motion that is left
+};
+
+// Pieces: least squares over control points; their 4 x 4 moment matrix is solved by Gaussian elimination with
+// a small ridge (flat pieces have no z extent). Periodic cells: the lattice's own map, so that what is left
+// is the same in every image, and least squares for z alone.
+AffineMotion affine_motion(const YarnState& state, const YarnState& target, bool periodic) {
   const std::size_t n = state.nodes.size();
   Vec3 centre;
   for (const Vec3& p : state.nodes) centre += p;
   centre *= 1.0 / static_cast<double>(n);
+  std::array<Vec3, 3> lattice{};  // its columns of T
+  if (periodic) {
+    lattice[0].x = target.width / state.width - 1;
+    lattice[1] = {(target.skew - state.skew - lattice[0].x * state.skew) / state.height,
+                  target.height / state.height - 1, 0};
+  }
+  const auto left = [&](std::size_t i) {
+    const Vec3 p = state.nodes[i] - centre;
+    return target.nodes[i] - state.nodes[i] - p.x * lattice[0] - p.y * lattice[1];
+  };
   std::array<std::array<double, 7>, 4> m{};  // moments of (x, y, z, 1), then three right-hand sides
   for (std::size_t i = 0; i < n; ++i) {
-    const Vec3 p = state.nodes[i] - centre, s = target.nodes[i] - state.nodes[i];
-    const std::array<double, 4> x{p.x, p.y, p.z, 1};
+    const Vec3 p = state.nodes[i] - centre, s = left(i);
+    const std::array<double, 4> x{periodic ? 0 : p.x, periodic ? 0 : p.y, p.z, 1};
     for (std::size_t r = 0; r < 4; ++r) {
       for (std::size_t c = 0; c < 4; ++c) m[r][c] += x[r] * x[c];
       m[r][4] += x[r] * s.x;
@@ -34,24 +52,29 @@ double motion_beyond_affine(const YarnState& state, const YarnState& target) {
       const double f = m[r][k] / m[k][k];
       for (std::size_t c = k; c < 7; ++c) m[r][c] -= f * m[k][c];
     }
-  double largest = 0;
+  std::array<Vec3, 4> column;  // of T, then t
+  for (std::size_t k = 0; k < 4; ++k) column[k] = Vec3{m[k][4], m[k][5], m[k][6]} / m[k][k];
+
+  AffineMotion motion;
+  double low = 0, high = 0;
   for (std::size_t i = 0; i < n; ++i) {
     const Vec3 p = state.nodes[i] - centre;
-    Vec3 s = target.nodes[i] - state.nodes[i];
-    for (std::size_t c = 0; c < 3; ++c) {
-      const double affine = m[0][4 + c] / m[0][0] * p.x + m[1][4 + c] / m[1][1] * p.y + m[2][4 + c] / m[2][2] * p.z +
-                            m[3][4 + c] / m[3][3];
-      s[static_cast<int>(c)] -= affine;
-    }
-    largest = std::max(largest, squared_norm(s));
+    low = std::min(low, p.z);
+    high = std::max(high, p.z);
+    motion.loose = std::max(motion.loose, squared_norm(left(i) - p.x * column[0] - p.y * column[1] -
+                                                       p.z * column[2] - column[3]));
   }
-  return std::sqrt(largest);
+  motion.loose = std::sqrt(motion.loose);
+  motion.thickness = high - low;
+  motion.in_plane = std::sqrt(squared_norm(column[0] + lattice[0]) + squared_norm(column[1] + lattice[1]));
+  motion.across = norm(column[2]);
+  return motion;
 }
 
 }  // namespace
 
-SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnState& state, const YarnState& target,
-                   double range, double outer_diameter, double share) {
+SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnState& state,
+                   const YarnState& target, double range, double outer_diameter, double share) {
   std::vector<Vec3> extended;
   SamplePlaces from, to;
   expand(model, state, extended);
@@ -68,22 +91,27 @@ SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnS
   };
   std::vector<Worst> worst(static_cast<std::size_t>(chunks));
   parallel_chunks(chunks, [&](int c) {
-    const std::size_t begin = static_cast<std::size_t>(c) * pairs_per_chunk, end = std::min(pairs.size(), begin + pairs_per_chunk);
+    const std::size_t begin = static_cast<std::size_t>(c) * pairs_per_chunk,
+                      end = std::min(pairs.size(), begin + pairs_per_chunk);
     Worst& w = worst[static_cast<std::size_t>(c)];
     for (std::size_t k = begin; k < end; ++k) {
       const SegmentPair& pair = pairs[k];
       const Vec3 image = state.lattice(pair.m, pair.n), moved_image = target.lattice(pair.m, pair.n) - image;
-      const YarnModel::Yarn& yarn = model.yarns[static_cast<std::size_t>(model.yarn_of_segment[static_cast<std::size_t>(pair.a)])];
+      const YarnModel::Yarn& yarn =
+          model.yarns[static_cast<std::size_t>(model.yarn_of_segment[static_cast<std::size_t>(pair.a)])];
       const double spacing = yarn.rest_length / model.samples;
       const double missed = spacing * spacing;  // nearest samples lie up to half a spacing off on either yarn
-      const auto i0 = static_cast<std::size_t>(pair.a * model.samples), j0 = static_cast<std::size_t>(pair.b * model.samples);
+      const auto i0 = static_cast<std::size_t>(pair.a * model.samples),
+                 j0 = static_cast<std::size_t>(pair.b * model.samples);
       const auto count = static_cast<std::size_t>(model.samples);
       for (std::size_t i = 0; i < count; ++i) {
         const double x = from.x[i0 + i] - image.x, y = from.y[i0 + i] - image.y, z = from.z[i0 + i] - image.z;
-        const double sx = to.x[i0 + i] - from.x[i0 + i] - moved_image.x, sy = to.y[i0 + i] - from.y[i0 + i] - moved_image.y,
+        const double sx = to.x[i0 + i] - from.x[i0 + i] - moved_image.x,
+                     sy = to.y[i0 + i] - from.y[i0 + i] - moved_image.y,
                      sz = to.z[i0 + i] - from.z[i0 + i] - moved_image.z;
         for (std::size_t j = 0; j < count; ++j) {
-          if (pair.same_yarn && std::abs(pair.arc_offset + (static_cast<double>(j) - static_cast<double>(i)) * spacing) < model.excluded)
+          if (pair.same_yarn && std::abs(pair.arc_offset + (static_cast<double>(j) - static_cast<double>(i)) *
+                                                               spacing) < model.excluded)
             continue;
           const double dx = x - from.x[j0 + j], dy = y - from.y[j0 + j], dz = z - from.z[j0 + j];
           const double d2 = dx * dx + dy * dy + dz * dz;
@@ -110,11 +138,19 @@ SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnS
       result.worst_b = w.b;
     }
   result.pair_ratio = std::sqrt(ratio2);
-  result.loose_motion = motion_beyond_affine(state, target);
-  // Pairs outside the list stay outside contact: each of the two may move by less than half of what parts them from it.
+  const AffineMotion affine = affine_motion(state, target, model.periodic);
+  result.loose_motion = affine.loose;
+  // Pairs outside the list stay outside contact: each of the two may move by less than half of what parts
+  // them from it.
   const double loose_limit = 0.45 * (range - outer_diameter);
   if (result.pair_ratio > share) result.scale = share / result.pair_ratio;
   if (result.loose_motion * result.scale > loose_limit) result.scale = loose_limit / result.loose_motion;
+  // An affine map moves no yarn through another as long as it does not flatten space. Over a distance D >=
+  // range it moves two points by at most in_plane D + across min(D, thickness) against each other; with twice
+  // the loose motion that must stay below D, which is hardest at D = range.
+  const double far_ratio =
+      affine.in_plane + affine.across * std::min(1.0, affine.thickness / range) + 2 * affine.loose / range;
+  if (far_ratio * result.scale > 0.9) result.scale = 0.9 / far_ratio;
   return result;
 }
 

@@ -10,6 +10,11 @@
 #include <Eigen/SparseCholesky>
 #endif
 
+#ifdef LOOPWRIGHT_HAS_CHOLMOD
+// OpenBLAS, if that is the BLAS in use: its threads would fight with ours, and results must not depend on their number.
+extern "C" void openblas_set_num_threads(int) __attribute__((weak));
+#endif
+
 namespace loopwright {
 namespace {
 
@@ -96,6 +101,7 @@ struct Cholesky::Factor {
   std::vector<int> order;
   double best_entries = 0;
   Factor() {
+    if (openblas_set_num_threads) openblas_set_num_threads(1);
     cholmod_start(&common);
     common.print = 0;
     common.supernodal = CHOLMOD_SUPERNODAL;

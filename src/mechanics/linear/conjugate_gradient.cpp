@@ -2,13 +2,13 @@
 
 namespace loopwright {
 
-ConjugateGradientResult conjugate_gradient(const BlockMatrix& matrix, double shift, Cholesky& preconditioner, const Unknowns& b,
+ConjugateGradientResult conjugate_gradient(const BlockMatrix& matrix, double shift, const Preconditioner& preconditioner, const Unknowns& b,
                                            double tolerance, int most, Unknowns& x) {
   ConjugateGradientResult result;
   Unknowns r = b, z, p, Ap;
   x.u.assign(b.u.size(), Vec3{});
   x.g = {};
-  preconditioner.solve(r, z);
+  preconditioner(r, z);
   p = z;
   double rz = dot(r, z);
   const double wanted = tolerance * tolerance * rz;
@@ -27,7 +27,7 @@ ConjugateGradientResult conjugate_gradient(const BlockMatrix& matrix, double shi
     const double a = rz / curvature;
     axpy(a, p, x);
     axpy(-a, Ap, r);
-    preconditioner.solve(r, z);
+    preconditioner(r, z);
     const double next = dot(r, z), beta = next / rz;
     rz = next;
     for (std::size_t i = 0; i < p.u.size(); ++i) p.u[i] = z.u[i] + beta * p.u[i];

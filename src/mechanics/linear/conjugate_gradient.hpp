@@ -1,9 +1,13 @@
-// Preconditioned conjugate gradients for (A + shift D) x = b; the preconditioner is a factor of an earlier matrix.
+// Preconditioned conjugate gradients for (A + shift D) x = b; the preconditioner is any symmetric
+// positive definite operator, such as a factor of an earlier matrix or a Schwarz method.
 #pragma once
+#include <functional>
+
 #include "mechanics/linear/block_matrix.hpp"
-#include "mechanics/linear/cholesky.hpp"
 
 namespace loopwright {
+
+using Preconditioner = std::function<void(const Unknowns& b, Unknowns& x)>;  // x = M^-1 b
 
 struct ConjugateGradientResult {
   bool converged = false;
@@ -12,7 +16,7 @@ struct ConjugateGradientResult {
 };
 
 // Stops when the residual, in the preconditioner's norm, has fallen by `tolerance`, or after `most` iterations.
-ConjugateGradientResult conjugate_gradient(const BlockMatrix& matrix, double shift, Cholesky& preconditioner, const Unknowns& b,
+ConjugateGradientResult conjugate_gradient(const BlockMatrix& matrix, double shift, const Preconditioner& preconditioner, const Unknowns& b,
                                            double tolerance, int most, Unknowns& x);
 
 }  // namespace loopwright

@@ -66,8 +66,8 @@ void clear_parents(const YarnGraph& graph, LoopId id, const std::vector<LoopId>&
   sign.lower_leg = s * (lower_leg + (count - 1 - rank) * layer_gap);
 }
 
-// Cables: move crossing legs apart, face stitches forward and rear stitches back, until every pair has its
-// gap.
+// Cables: move crossing legs apart, forward under face stitches and back under rear stitches, until every
+// pair has its gap.
 void separate_legs(const YarnGraph& graph, const Layout& layout, double r, std::vector<LoopSigns>& signs) {
   const auto leg = [&](LoopId id) {
     const std::size_t i = id.position();
@@ -82,7 +82,10 @@ void separate_legs(const YarnGraph& graph, const Layout& layout, double r, std::
       if (missing <= 1e-9) continue;
       LoopSigns& front = signs[crossing.front.position()];
       LoopSigns& back = signs[crossing.back.position()];
-      const double share = front.s == back.s ? (front.s > 0 ? 1 : 0) : 0.5;
+      // A leg may move away from the sinkers of its children, which lie behind face stitches, but not into
+      // them.
+      const bool may_advance = front.c > 0, may_retreat = back.c < 0;
+      const double share = may_advance == may_retreat ? 0.5 : may_advance ? 1 : 0;
       front.leg_offset += share * missing;
       back.leg_offset -= (1 - share) * missing;
       moved = true;

@@ -51,8 +51,9 @@ std::vector<Vec3> spline_through(const std::vector<Vec3>& places) {
   return q;
 }
 
-// The frame is the outermost ring of loops, held whole in the shape that they have in the cell: the piece's inside then has the
-// neighbours that it would have in an endless cloth. (A template's few held points would leave border loops half free.)
+// The frame is the outermost ring of loops, held whole in the shape that they have in the cell: the piece's
+// inside then has the neighbours that it would have in an endless cloth. (A template's few held points would
+// leave border loops half free.)
 void hold_border_loops(Fabric& fabric) {
   std::vector<std::vector<std::uint8_t>> held;
   for (const FabricYarn& yarn : fabric.yarns) held.push_back(yarn.held);

@@ -69,11 +69,22 @@ void clear_parents(const YarnGraph& graph, LoopId id, const std::vector<LoopId>&
 // Cables: move crossing legs apart, forward under face stitches and back under rear stitches, until every
 // pair has its gap.
 void separate_legs(const YarnGraph& graph, const Layout& layout, double r, std::vector<LoopSigns>& signs) {
+  const auto foot_side = [&](std::size_t i) { return layout.lower[i].z / r + 1.5 * signs[i].s; };
+  const auto head_side = [&](std::size_t i) {
+    return layout.upper[i].z / r + 1.5 * signs[i].c + signs[i].head_layer;
+  };
+  const auto leans = [&](std::size_t i) { return std::abs(layout.upper[i].x - layout.lower[i].x) > 3 * r; };
   const auto leg = [&](LoopId id) {
     const std::size_t i = id.position();
-    return (layout.lower[i].z + layout.upper[i].z) / (2 * r) + 0.75 * (signs[i].s + signs[i].c) +
-           signs[i].leg_offset;
+    const double side = leans(i) ? head_side(i) : (foot_side(i) + head_side(i)) / 2;
+    return side + signs[i].leg_offset;
   };
+  // A leg in front is early on whichever side is farther forward, one behind on whichever is farther back.
+  for (const LegCrossing& crossing : graph.leg_crossings) {
+    const std::size_t front = crossing.front.position(), back = crossing.back.position();
+    if (head_side(front) > foot_side(front)) signs[front].early_rise = 1;
+    if (head_side(back) < foot_side(back)) signs[back].early_rise = 1;
+  }
   constexpr int most_sweeps = 60;
   for (int sweep = 0; sweep < most_sweeps; ++sweep) {
     bool moved = false;

@@ -23,6 +23,8 @@ struct LoopSigns {
   double foot_spread = 0;  // the feet stand so much farther out, beside a sibling that goes the other way
   double head_spread = 0;  // the head is so much wider, for children that go both ways
   double leg_offset = 0;   // z of the legs where they cross those of other loops (cables)
+  double early_rise =
+      0.05;  // share of the way from the foot's side to the head's that a leaning leg has made near its foot
 };
 
 // For every loop the fullest stack that its head lies in; empty for a head without children.

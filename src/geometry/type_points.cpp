@@ -116,7 +116,7 @@ class LoopPlacer {
       const double aslant = std::clamp(3.6 * (1 - 2 * steep), 0.0, 1.0);
       const double shingle = (lower ? 0.6 : -0.6) * aslant;
       const double near_end = 2 - 1.35 * aslant, far_end = 2 - 1.15 * aslant;
-      leg(0.3, (lower ? far_end : near_end) * width, 0.05, shingle);
+      leg(0.3, (lower ? far_end : near_end) * width, sign.early_rise, shingle);
       leg(0.5, 2 * width, 1, 0);
       leg(0.7, (lower ? near_end : far_end) * width, 1, -shingle);
     } else if (graph_.loop(id).head_count > 1) {

@@ -24,6 +24,20 @@ std::optional<int> parsed_count(std::string_view text) {
   return count;
 }
 
+// The window and one ring of loops round it: the ring is the frame. Yarn may slide in the ring, where it is cut, so only
+// the window's own interlacings are asked for (steps are certified for all yarn, the ring's too).
+YarnCurves window_in_frame(const YarnGraph& graph, const GeometryOptions& options, const PlacedPiece& piece,
+                           const WindowSize& window) {
+  const auto with_ring = [](int count) { return count == 0 ? 0 : count + 2; };
+  const LoopSelection wanted = middle_window(graph, piece.layout, window.wales, window.courses);
+  YarnCurves curves = cut_window(
+      graph, options, piece, middle_window(graph, piece.layout, with_ring(window.wales), with_ring(window.courses)));
+  std::erase_if(curves.interlacings, [&wanted](const PlacedInterlacing& i) {
+    return !wanted[i.parent.position()] || !wanted[i.child.position()];
+  });
+  return curves;
+}
+
 YarnCurves wanted_curves(const Knitting& knitting, const PieceRequest& request,
                          const GeometryOptions& options) {
   const YarnGraph& graph = knitting.graph;
@@ -31,9 +45,7 @@ YarnCurves wanted_curves(const Knitting& knitting, const PieceRequest& request,
   const Edges edges = knitting.program.settings.edges.value_or(Edges::bound_off);
   if (request.periodic || (edges == Edges::periodic && !request.window))
     return cut_periodic_cell(graph, options, piece, cell_range(knitting.program));
-  if (request.window)
-    return cut_window(graph, options, piece,
-                      middle_window(graph, piece.layout, request.window->wales, request.window->courses));
+  if (request.window) return window_in_frame(graph, options, piece, *request.window);
   return cut_window(graph, options, piece, program_window(graph, knitting.program.window));
 }
 

@@ -163,6 +163,8 @@ NewtonResult newton(const YarnModel& model, YarnState& state, const NewtonOption
       loose = std::min(2 * loose, 2.4);
     else
       loose = std::max(0.6, 0.7 * loose);
+    // The step as it was taken must be certified; one that is not counts as a possible pass-through.
+    if (!(safe.pair_ratio * scale < 1) || !(safe.loose_motion * scale < 0.5 * (range - outer))) ++result.crossings;
     state = std::move(next);
     assembly.accept(state);
   }

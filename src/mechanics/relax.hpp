@@ -35,7 +35,7 @@ struct RelaxResult {
   double measure_residual = 0;     // largest dE/d(width or height) of one wale or course, B/d^2
   int newton_iterations = 0, linear_iterations = 0, factorisations = 0;
   bool converged = false, stopped = false;
-  int pass_throughs = 0;           // certified motions that failed their check: 0, or the result is broken
+  int pass_throughs = 0;           // steps that could not be certified free of crossings: 0, or the result is broken
   std::string message;             // why it ended, in words
 };
 

@@ -294,11 +294,20 @@ Layout lay_out(const YarnGraph& graph, const GeometryOptions& options) {
     for (const std::size_t node : {nodes.lower(LoopId(i)), nodes.upper(LoopId(i))})
       scale[node] = std::clamp(room, 0.3, scale[node]);
   }
-  layout.y_scale_lower.resize(n);
-  layout.y_scale_upper.resize(n);
+  // The loops of a bind-off's chain lie flat from one wale to the next and need room between the heads there.
+  constexpr double narrow = 0.7, flat = 0.3;
+  std::vector<double> width(2 * n, 1);
   for (std::size_t i = 0; i < n; ++i) {
-    layout.y_scale_lower[i] = scale[nodes.lower(LoopId(i))];
-    layout.y_scale_upper[i] = scale[nodes.upper(LoopId(i))];
+    const Vec3 step = layout.upper[i] - layout.lower[i];
+    if (step.y >= flat * std::hypot(step.x, step.y)) continue;
+    width[nodes.lower(LoopId(i))] = width[nodes.upper(LoopId(i))] = narrow;
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t low = nodes.lower(LoopId(i)), high = nodes.upper(LoopId(i));
+    layout.y_scale_lower.push_back(scale[low]);
+    layout.y_scale_upper.push_back(scale[high]);
+    layout.x_scale_lower.push_back(width[low]);
+    layout.x_scale_upper.push_back(width[high]);
   }
   return layout;
 }

@@ -14,7 +14,8 @@ namespace loopwright {
 struct Layout {
   std::vector<Vec3> lower, upper;  // per loop: O and P, in d. P of a parent equals O of its children
   std::vector<double> y_scale_lower,
-      y_scale_upper;                // per loop: share of the template's height that there is room for
+      y_scale_upper;  // per loop: share of the template's height that there is room for
+  std::vector<double> x_scale_lower, x_scale_upper;  // and of its width
   std::vector<std::uint8_t> faced;  // per loop: 1 if a loop lay on the facing needle of the other bed
   double slot_pitch = 1;            // x of one slot, in d
   bool two_beds = false;            // loops were formed on both beds

@@ -11,7 +11,7 @@ constexpr double layer_gap =
     2.2;  // between yarns that lie over each other, in r: a little more than they are thick
 // Between the middles of loops whose legs cross; their legs lie like shingles, 0.6 up and down.
 constexpr double crossing_gap = 3.8;
-constexpr double split_spread = 1.1;
+constexpr double split_spread = 0.7;
 
 // Loops drawn through the same head to the same side, front one first.
 std::vector<LoopId> plated_group(const YarnGraph& graph, LoopId id, const Loop& loop) {

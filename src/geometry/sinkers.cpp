@@ -138,7 +138,7 @@ class SinkerPlacer {
         const double line =
             begin.y + (end_point.y - begin.y) * std::clamp((x - begin.x) / (end_point.x - begin.x), 0.0, 1.0);
         const double share = events_.share_of_float(held.loop, yarn, gap);
-        const double y = height_on(held.loop, line, share);
+        const double y = lies_flat(held.loop) ? line : height_on(held.loop, line, share);
         y_sum += y;
         x_sum += leg_centre(held, y);
         double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -199,11 +199,15 @@ class SinkerPlacer {
     return std::clamp(line, centre - reach, centre + reach);
   }
 
+  bool lies_flat(LoopId id) const {
+    const Vec3 step = piece_.layout.upper[id.position()] - piece_.layout.lower[id.position()];
+    return step.y < 0.3 * std::abs(step.x);
+  }
   // Where a held loop's legs are at height y; a loop that lies flat is passed at the needle.
   double leg_centre(const PassedLoop& held, double y) const {
     const Vec3& low = piece_.layout.lower[held.loop.position()];
     const Vec3& high = piece_.layout.upper[held.loop.position()];
-    if (high.y - low.y < 0.3 * std::abs(high.x - low.x)) return held.slot * piece_.layout.slot_pitch;
+    if (lies_flat(held.loop)) return held.slot * piece_.layout.slot_pitch;
     const double share = high.y > low.y ? std::clamp((y - low.y) / (high.y - low.y), 0.0, 1.0) : 0.5;
     return low.x + (high.x - low.x) * share;
   }

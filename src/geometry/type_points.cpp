@@ -47,11 +47,13 @@ class LoopPlacer {
   // O or P plus an offset in r.
   Vec3 at_lower(LoopId id, double x, double y, double z) const {
     const std::size_t i = id.position();
-    return layout_.lower[i] + Vec3{x * sx_, y * sy_ * layout_.y_scale_lower[i], z * r_};
+    return layout_.lower[i] +
+           Vec3{x * sx_ * layout_.x_scale_lower[i], y * sy_ * layout_.y_scale_lower[i], z * r_};
   }
   Vec3 at_upper(LoopId id, double x, double y, double z) const {
     const std::size_t i = id.position();
-    return layout_.upper[i] + Vec3{x * sx_, y * sy_ * layout_.y_scale_upper[i], z * r_};
+    return layout_.upper[i] +
+           Vec3{x * sx_ * layout_.x_scale_upper[i], y * sy_ * layout_.y_scale_upper[i], z * r_};
   }
   // A place on a leg between O and P: `across` from their line, at right angles to it, so that leaning loops
   // keep their legs apart.
@@ -142,17 +144,17 @@ class LoopPlacer {
       const Vec3 base = layout_.lower[i] + (layout_.upper[i] - layout_.lower[i]) * share;
       points.push_back(point(id, LoopPart::leg, base + Vec3{0, y * sy_, z * r_}));
     };
-    const double wide = sign.head_spread;
+    const double wide = sign.head_spread, low = layout_.x_scale_lower[i], high = layout_.x_scale_upper[i];
     if (side * lean > 0) {
-      leg(2 + sign.foot_spread, -0.4, out);
-      leg(3.6, -1.9, out);
-      leg(length - 3.4, -1.8, in);
+      leg((2 + sign.foot_spread) * low, -0.4, out);
+      leg((3.4 + sign.foot_spread) * low, -1.7, out);
+      leg(length - (3.4 + wide) * high, -1.8, in);
       leg(length, -1.8, in);
       head_half(id, side, sign.head_layer, points);
     } else {
-      leg(1, 4.6, out);
-      leg(3.6, 3.6, out);
-      leg(length - 3.6, 2.2, in);
+      leg(low, 4.6, out);
+      leg((3.4 + sign.foot_spread) * low, 3.8, out);
+      leg(length - (3.4 + wide) * high, 2.2, in);
       points.push_back(point(id, LoopPart::leg, at_upper(id, -ahead * (2.8 + wide), 0.4, sign.head_layer)));
       points.push_back(point(id, LoopPart::head,
                              at_upper(id, -ahead * (1.444 + wide), 1.556 + 0.4 * wide,

@@ -52,6 +52,12 @@ class SinkerPlacer {
     if (!short_span) passes = passed(yarn, gap, begin, end_point);
     if (short_span) {
       Vec3 middle = (begin + end_point) / 2;
+      // Between two loops that go through one head both ways the sinker goes round that head's leg, below it.
+      const Loop &first = graph_.loop(from), &second = graph_.loop(to);
+      const bool both_ways = first.side != second.side &&
+                             std::find_first_of(first.parents.begin(), first.parents.end(), second.parents.begin(),
+                                                second.parents.end()) != first.parents.end();
+      if (both_ways) middle.y -= 2 * sy_;
       // A turn at a selvedge swings out a little.
       if (exit_side(from) == entry_side(to)) middle.x += exit_side(from) * 0.5 * sx_;
       sinker.points = {point(from, LoopPart::sinker, middle)};
@@ -177,7 +183,8 @@ class SinkerPlacer {
       loops.push_back(passed_loop);
     };
     const auto on_own_bed = graph_.loop(yarn_float.to).bed;
-    add(yarn_float.from, yarn_float.from, graph_.loop(yarn_float.from).bed);
+    const Loop& from = graph_.loop(yarn_float.from);
+    if (std::abs(from.head_slot - from.slot) < 0.3) add(yarn_float.from, yarn_float.from, from.bed);
     const std::vector<LoopId>& parents = graph_.loop(yarn_float.to).parents;
     for (const LoopId parent : parents) add(parent, yarn_float.to, on_own_bed);
     // Loops of the same stack that the loop is not drawn through lay on the facing needle.

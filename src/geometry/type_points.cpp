@@ -122,8 +122,10 @@ class LoopPlacer {
       leg(0.5, 2 * width, 1, 0);
       leg(0.7, (lower ? near_end : far_end) * width, 1, -shingle);
     } else if (graph_.loop(id).head_count > 1) {
-      leg(0.35, 1.8, 0.2, 0);
-      leg(0.55, 2.1, 1, 0);
+      const std::size_t i = id.position();
+      const bool room = layout_.upper[i].y - layout_.lower[i].y > 5.5 * sy_;
+      if (room) leg(0.35, 1.8, 0.2, 0);
+      leg(0.55, 2.1, room ? 1 : 0.7, 0);
     } else {
       leg(0.5, 2, 0.5, 0);
     }

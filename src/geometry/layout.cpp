@@ -19,6 +19,9 @@ constexpr double yarn_weight = 1, covered_tuck_weight = 0.3, passed_weight = 0.1
 // A held loop grows by this share of a course for every float or tuck that must find room along its legs.
 constexpr double growth_per_event = 0.45, most_growth = 2.5;
 constexpr double tuck_height = 0.6;  // of a course, where nothing is held below it
+// A loop whose head was moved to another wale may take any direction; the wale there says how high it
+// reaches.
+constexpr double moved_weight = 0.2;
 constexpr double anchor_weight = 1e-9;
 
 class Nodes {  // union-find: lower nodes 0 .. n-1, upper nodes n .. 2n-1
@@ -131,9 +134,12 @@ Eigen::VectorXd levels(const YarnGraph& graph, const GeometryOptions& options, N
     }
   for (std::size_t i = 0; i < graph.loops.size(); ++i) {
     const LoopId id(i);
+    const double lean = graph.loops[i].head_slot - graph.loops[i].slot;
     rows.add_row({{nodes.upper(id), 1}, {nodes.lower(id), -1}},
                  warp_rest(graph.loops[i], events.of_loop[i].size(), options.course_pitch),
-                 covers[i] ? covered_tuck_weight : yarn_weight);
+                 covers[i]              ? covered_tuck_weight
+                 : std::abs(lean) > 0.6 ? moved_weight
+                                        : yarn_weight);
   }
   const std::vector<LoopId> facing = facing_loops(graph);
   std::vector<double> faced_by(graph.loops.size()), before(graph.loops.size());

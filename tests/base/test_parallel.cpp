@@ -32,7 +32,8 @@ TEST_P(Parallel, SumsByChunkAreEqualToTheLastBit) {
   const auto sum = [] {
     std::vector<double> partial(37);
     parallel_chunks(37, [&](int c) {
-      for (int k = 0; k < 1000; ++k) partial[static_cast<std::size_t>(c)] += std::sin(c * 1000.0 + k) / (k + 1);
+      for (int k = 0; k < 1000; ++k)
+        partial[static_cast<std::size_t>(c)] += std::sin(c * 1000.0 + k) / (k + 1);
     });
     double total = 0;
     for (const double p : partial) total += p;
@@ -67,7 +68,8 @@ TEST_P(Parallel, CallsFromInsideRunToo) {
 
 TEST_P(Parallel, ManySmallRounds) {
   std::vector<int> values(8);
-  for (int round = 0; round < 2000; ++round) parallel_chunks(8, [&](int i) { ++values[static_cast<std::size_t>(i)]; });
+  for (int round = 0; round < 2000; ++round)
+    parallel_chunks(8, [&](int i) { ++values[static_cast<std::size_t>(i)]; });
   EXPECT_THAT(values, testing::Each(2000));
 }
 

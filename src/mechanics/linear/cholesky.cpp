@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <stdexcept>
 
 #ifdef LOOPWRIGHT_HAS_CHOLMOD
@@ -152,7 +153,14 @@ struct Cholesky::Factor {
     graph.dtype = CHOLMOD_DOUBLE;
     graph.sorted = graph.packed = 1;
     std::vector<int> node_order(static_cast<std::size_t>(m.rows()));
-    if (!(m.rows() > 2000 && cholmod_metis(&graph, nullptr, 0, 1, node_order.data(), &common)) &&
+    // METIS draws from the C library's one random generator, which it seeds anew at every call: one call at a time, or the
+    // order (and the last bits of the solution) depends on what other threads factor meanwhile.
+    static std::mutex metis;
+    const auto nested_dissection = [&] {
+      const std::lock_guard lock(metis);
+      return cholmod_metis(&graph, nullptr, 0, 1, node_order.data(), &common) != 0;
+    };
+    if (!(m.rows() > 2000 && nested_dissection()) &&
         !cholmod_amd(&graph, nullptr, 0, node_order.data(), &common))
       throw std::runtime_error("ordering the stiffness matrix failed (out of memory?)");
     order.clear();

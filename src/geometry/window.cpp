@@ -25,6 +25,28 @@ bool is_tube(const YarnGraph& graph, const Layout& layout) {
   return turns > 0 && 10 * turns_over > 6 * turns && 10 * steps_over < steps;
 }
 
+struct Gap {
+  double limit = 0;  // lies in the gap
+  double miss = 0;   // how many loops more or less than wanted are nearer than that, and how small the gap is
+};
+
+// The gap in sorted distances near the `wanted`-th that cuts a course off cleanly: the widest for its place.
+Gap gap_near(const std::vector<double>& distances, std::size_t wanted, std::size_t columns) {
+  Gap best;
+  best.miss = std::numeric_limits<double>::infinity();
+  const std::size_t low = wanted > columns ? wanted - columns : 1;
+  double widest = 1e-12;
+  for (std::size_t k = low; k < std::min(wanted + columns, distances.size()); ++k)
+    widest = std::max(widest, distances[k] - distances[k - 1]);
+  for (std::size_t k = low; k < std::min(wanted + columns, distances.size()); ++k) {
+    const double off =
+        std::abs(static_cast<double>(k) - static_cast<double>(wanted)) / static_cast<double>(columns);
+    const double miss = off + 1 - (distances[k] - distances[k - 1]) / widest;
+    if (miss < best.miss) best = {(distances[k] + distances[k - 1]) / 2, miss};
+  }
+  return best;
+}
+
 }  // namespace
 
 LoopSelection middle_window(const YarnGraph& graph, const Layout& layout, int wales, int courses) {
@@ -57,28 +79,25 @@ LoopSelection middle_window(const YarnGraph& graph, const Layout& layout, int wa
   const double layers = 1 + faced / static_cast<double>(levels.size());
   const double wanted = static_cast<double>(columns) * courses * layers;
   if (wanted >= static_cast<double>(levels.size())) return selection;
+  // An odd number of courses lies round a course, an even one round the gap between two: the better of the
+  // two centres.
   std::sort(levels.begin(), levels.end());
   const double middle = (levels[levels.size() / 2] + levels[(levels.size() - 1) / 2]) / 2;
-  std::vector<double> distances;
-  for (const double level : levels) distances.push_back(std::abs(level - middle));
-  std::sort(distances.begin(), distances.end());
-  // A limit in the largest step near the wanted count, so that a course is not cut by rounding.
-  const std::size_t count = static_cast<std::size_t>(wanted);
-  std::size_t best = count;
-  double widest = -1;
-  const std::size_t slack = columns;
-  for (std::size_t k = std::max<std::size_t>(count, slack) - slack / 2;
-       k < std::min(count + slack, distances.size()); ++k) {
-    if (k == 0) continue;
-    const double step = distances[k] - distances[k - 1];
-    if (step > widest * 1.5 + 1e-9 || (step > widest - 1e-9 && k <= count)) {
-      widest = step;
-      best = k;
-    }
+  const double course = (levels.back() - levels.front()) * static_cast<double>(columns) * layers /
+                        static_cast<double>(levels.size());
+  double best_centre = middle, best_limit = 0, best_miss = std::numeric_limits<double>::infinity();
+  for (const double centre : {middle, middle + course / 2}) {
+    std::vector<double> distances;
+    for (const double level : levels) distances.push_back(std::abs(level - centre));
+    std::sort(distances.begin(), distances.end());
+    const auto [limit, miss] = gap_near(distances, static_cast<std::size_t>(wanted), columns);
+    if (miss >= best_miss) continue;
+    best_miss = miss;
+    best_limit = limit;
+    best_centre = centre;
   }
-  const double limit = (distances[best] + distances[best - 1]) / 2;
   for (std::size_t i = 0; i < n; ++i)
-    if (std::abs(layout.lower[i].y - middle) > limit) selection[i] = 0;
+    if (std::abs(layout.lower[i].y - best_centre) > best_limit) selection[i] = 0;
   return selection;
 }
 

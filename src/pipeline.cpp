@@ -3,6 +3,7 @@
 #include <charconv>
 #include <stdexcept>
 
+#include "experiments/piece_size.hpp"
 #include "geometry/fit_fabric.hpp"
 #include "geometry/periodic_cell.hpp"
 #include "geometry/start_from_cell.hpp"
@@ -24,29 +25,53 @@ std::optional<int> parsed_count(std::string_view text) {
   return count;
 }
 
-// The window and one ring of loops round it: the ring is the frame. Yarn may slide in the ring, where it is cut, so only
-// the window's own interlacings are asked for (steps are certified for all yarn, the ring's too).
-YarnCurves window_in_frame(const YarnGraph& graph, const GeometryOptions& options, const PlacedPiece& piece,
+struct WantedPart {
+  YarnCurves curves;
+  LoopSelection inside;  // loops that are measured; empty: all that the curves hold
+};
+
+// The window and one ring of loops round it: the ring is the frame. Yarn may slide in the ring, where it is
+// cut, so only the window's own interlacings are asked for (steps are certified for all yarn, the ring's
+// too). Wales, courses and size are the window's own: the ring only holds it.
+WantedPart window_in_frame(const YarnGraph& graph, const GeometryOptions& options, const PlacedPiece& piece,
                            const WindowSize& window) {
   const auto with_ring = [](int count) { return count == 0 ? 0 : count + 2; };
-  const LoopSelection wanted = middle_window(graph, piece.layout, window.wales, window.courses);
-  YarnCurves curves = cut_window(
-      graph, options, piece, middle_window(graph, piece.layout, with_ring(window.wales), with_ring(window.courses)));
-  std::erase_if(curves.interlacings, [&wanted](const PlacedInterlacing& i) {
-    return !wanted[i.parent.position()] || !wanted[i.child.position()];
+  WantedPart part;
+  part.inside = middle_window(graph, piece.layout, window.wales, window.courses);
+  part.curves =
+      cut_window(graph, options, piece,
+                 middle_window(graph, piece.layout, with_ring(window.wales), with_ring(window.courses)));
+  std::erase_if(part.curves.interlacings, [&part](const PlacedInterlacing& i) {
+    return part.inside[i.parent.position()] == 0 || part.inside[i.child.position()] == 0;
   });
-  return curves;
+  const YarnCurves inner = cut_window(graph, options, piece, part.inside);
+  part.curves.wales = inner.wales, part.curves.courses = inner.courses;
+  part.curves.width = inner.width, part.curves.height = inner.height;
+  return part;
 }
 
-YarnCurves wanted_curves(const Knitting& knitting, const PieceRequest& request,
-                         const GeometryOptions& options) {
+// What mechanics may change of the outer measures where there is neither lattice nor frame.
+constexpr FreeMeasures no_frame{false, false, false};
+
+Edges edges_of(const Program& program) { return program.settings.edges.value_or(Edges::bound_off); }
+
+// Whether nothing holds the piece's border: mechanics has no frame to move then, and sizes are those of the
+// loops.
+bool is_free_piece(const Program& program, const PieceRequest& request) {
+  const Edges edges = edges_of(program);
+  return !request.periodic && !request.window && edges != Edges::held && edges != Edges::periodic;
+}
+
+bool is_framed(const RelaxOptions& options) { return options.model.free.width || options.model.free.height; }
+
+WantedPart wanted_part(const Knitting& knitting, const PieceRequest& request,
+                       const GeometryOptions& options) {
   const YarnGraph& graph = knitting.graph;
   const PlacedPiece piece = place_type_points(graph, options);
-  const Edges edges = knitting.program.settings.edges.value_or(Edges::bound_off);
-  if (request.periodic || (edges == Edges::periodic && !request.window))
-    return cut_periodic_cell(graph, options, piece, cell_range(knitting.program));
   if (request.window) return window_in_frame(graph, options, piece, *request.window);
-  return cut_window(graph, options, piece, program_window(graph, knitting.program.window));
+  if (request.periodic || edges_of(knitting.program) == Edges::periodic)
+    return {cut_periodic_cell(graph, options, piece, cell_range(knitting.program)), {}};
+  return {cut_window(graph, options, piece, program_window(graph, knitting.program.window)), {}};
 }
 
 }  // namespace
@@ -75,7 +100,11 @@ Knitting knit(const std::filesystem::path& file, const PieceRequest& request, Di
 Fabric first_geometry(const Knitting& knitting, const PieceRequest& request) {
   if (knitting.graph.loops.empty()) throw std::invalid_argument("nothing was knitted: there is no loop");
   const GeometryOptions options = make_geometry_options(knitting.program);
-  Fabric fabric = fit_fabric(wanted_curves(knitting, request, options), knitting.graph, options);
+  const WantedPart part = wanted_part(knitting, request, options);
+  Fabric fabric = fit_fabric(part.curves, knitting.graph, options);
+  if (!part.inside.empty())
+    std::erase_if(fabric.loops,
+                  [&part](const LoopSpan& span) { return part.inside[span.loop.position()] == 0; });
   if (fabric.loops.empty()) throw std::invalid_argument("the part that is wanted holds no loop");
   fabric.name = knitting.program.settings.name;
   return fabric;
@@ -86,14 +115,17 @@ RelaxOptions relax_options(const Fabric& fabric, const Program& program, const P
   const YarnData& yarn = reference_yarn(program);
   RelaxOptions options;
   options.model.material = yarn_material(yarn, fabric.diameter_mm);
-  options.model.material.friction = request.friction.value_or(yarn.friction_coefficient.value_or(usual_friction));
+  options.model.material.friction =
+      request.friction.value_or(yarn.friction_coefficient.value_or(usual_friction));
+  if (is_free_piece(program, request)) options.model.free = no_frame;
   return options;
 }
 
-std::optional<Fabric> start_from_relaxed_cell(const Knitting& knitting, const PieceRequest& request, const Fabric& first,
-                                              const RelaxOptions& options) {
+std::optional<Fabric> start_from_relaxed_cell(const Knitting& knitting, const PieceRequest& request,
+                                              const Fabric& first, const RelaxOptions& options) {
   const Program& program = knitting.program;
-  if (first.periodic || request.window || program.window.needles == 0 || program.repeat_starts.size() < 2) return std::nullopt;
+  if (first.periodic || request.window || program.window.needles == 0 || program.repeat_starts.size() < 2)
+    return std::nullopt;
   const GeometryOptions geometry = make_geometry_options(program);
   std::optional<Fabric> cell;
   CellRange range;
@@ -130,6 +162,15 @@ RelaxOptions relax_options(const State& state) {
   material.friction = number("friction");
   options.grow_in = number("radius") < 1;
   return options;
+}
+
+RelaxResult relax_piece(const Fabric& fabric, const RelaxOptions& options) {
+  RelaxResult result = relax(fabric, options);
+  if (!fabric.periodic && !is_framed(options)) {
+    const PieceSize size = piece_size(result.fabric);
+    result.fabric.width = size.width, result.fabric.height = size.height;
+  }
+  return result;
 }
 
 Assessment assess(const Fabric& fabric) {
@@ -189,6 +230,7 @@ State saved_state(const Fabric& fabric, const RelaxOptions& options, double radi
                    {"contact_stiffness", material.contact.stiffness},
                    {"contact_exponent", material.contact.exponent},
                    {"friction", material.friction},
+                   {"framed", is_framed(options) ? 1 : 0},
                    {"radius", radius}};
   return state;
 }

@@ -3,7 +3,7 @@
 //
 //   knit            read_program -> run_machine -> build_yarn_graph
 //   first_geometry  place_type_points -> cut_window or cut_periodic_cell -> fit_fabric
-//   relax           (mechanics/relax.hpp) with relax_options
+//   relax_piece     relax, with relax_options
 //   assess          measure, check_interlacings, min_clearance
 //   results         all numbers as one JSON object; saved_state, write_fabric, render: the rest of outputs
 #pragma once
@@ -34,9 +34,9 @@ WindowSize parsed_window(std::string_view text);
 
 // What is wanted of a file's fabric. Neither: what the file's edges say; the whole piece for knitout.
 struct PieceRequest {
-  bool periodic = false;             // one repeat of the structure, as a cell
+  bool periodic = false;               // one repeat of the structure, as a cell
   std::optional<WindowSize> window{};  // a part with held edges
-  bool start_from_cell = false;      // held pieces of a repeated notation: relax() starts from the relaxed repeat
+  bool start_from_cell = false;  // held pieces of a repeated notation: relax() starts from the relaxed repeat
   std::optional<double> friction{};  // coefficient of yarn on yarn, instead of the yarn's own
 };
 
@@ -52,16 +52,20 @@ Knitting knit(const std::filesystem::path& file, const PieceRequest& request, Di
 // part.
 Fabric first_geometry(const Knitting& knitting, const PieceRequest& request);
 
-// mechanics: how relax() is to treat a first geometry, from the data of its thickest yarn. Friction: what is asked for,
-// else the yarn's own, else 0.25 (the middle of what is measured for wool, cotton and acrylic).
+// mechanics: how relax() is to treat a first geometry, from the data of its thickest yarn. Friction: what is
+// asked for, else the yarn's own, else 0.25 (the middle of what is measured for wool, cotton and acrylic).
 RelaxOptions relax_options(const Fabric& fabric, const Program& program, const PieceRequest& request);
-// A held piece of a repeated notation, with every loop as it is in the relaxed periodic cell of one repeat: nearly at
-// rest from the start. Nothing where the piece has no such cell; then it starts from the first geometry.
-std::optional<Fabric> start_from_relaxed_cell(const Knitting& knitting, const PieceRequest& request, const Fabric& first,
-                                              const RelaxOptions& options);
+// A held piece of a repeated notation, with every loop as it is in the relaxed periodic cell of one repeat:
+// nearly at rest from the start. Nothing where the piece has no such cell; then it starts from the first
+// geometry.
+std::optional<Fabric> start_from_relaxed_cell(const Knitting& knitting, const PieceRequest& request,
+                                              const Fabric& first, const RelaxOptions& options);
 // The same for a saved state: it holds what is needed, and how far it was. Throws std::invalid_argument if
 // not.
 RelaxOptions relax_options(const State& state);
+
+// relax(); a piece that no frame holds then gets the width and height at which its loops came to rest.
+RelaxResult relax_piece(const Fabric& fabric, const RelaxOptions& options);
 
 // experiments: what is measured, and whether the cloth still is what the machine knitted.
 struct Assessment {

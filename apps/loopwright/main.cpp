@@ -78,8 +78,9 @@ void add_commands(CLI::App& app, Commands& commands, Action& action) {
   relax->add_option("--render", commands.relax.render, "Draw the relaxed cloth")->type_name("PNG");
   add_picture_options(*relax, commands.relax.picture);
   relax
-      ->add_option("--friction", commands.relax.piece.friction,
-                   "Friction coefficient of yarn on yarn (0: frictionless; default: the yarn's own, else 0.25)")
+      ->add_option(
+          "--friction", commands.relax.piece.friction,
+          "Friction coefficient of yarn on yarn (0: frictionless; default: the yarn's own, else 0.25)")
       ->type_name("MU")
       ->check(CLI::Range(0.0, 5.0));
   relax->add_flag("!--from-template", commands.relax.piece.start_from_cell,

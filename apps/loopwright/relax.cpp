@@ -71,7 +71,7 @@ RelaxRun relax_watched(const Piece& piece, RelaxOptions options) {
   RelaxWatch watch(options);
   options.on_progress = [&watch](const RelaxProgress& progress) { return watch(progress); };
   RelaxRun run;
-  run.result = relax(piece.state.fabric, options);
+  run.result = relax_piece(piece.state.fabric, options);
   run.radius = watch.radius();
   return run;
 }

@@ -19,10 +19,6 @@ void require_measurable(const Fabric& fabric) {
   }
 }
 
-double millimetres_of_yarn(const Fabric& fabric, const FabricYarn& yarn) {
-  return yarn.segment_rest_length * yarn.segments() * fabric.diameter_mm;
-}
-
 // Highest and lowest point of the yarns' surfaces; the curve's own extremes lie within 1e-3 d of 16 points a
 // segment.
 double thickness(const Fabric& fabric) {
@@ -49,12 +45,13 @@ double mean_loop_length(const Fabric& fabric) {
 void measure_yarns(const Fabric& fabric, Measurements& m) {
   double mass = 0;
   bool weighed = true;
-  for (const FabricYarn& piece : fabric.yarns) {
+  for (const LoopSpan& span : fabric.loops) {
+    const FabricYarn& piece = fabric.yarns[static_cast<std::size_t>(span.yarn)];
     auto known = std::find_if(m.yarn.begin(), m.yarn.end(), [&](const YarnMeasurement& one) {
       return piece.yarn.valid() && one.yarn == piece.yarn;
     });
     if (known == m.yarn.end()) known = m.yarn.insert(m.yarn.end(), YarnMeasurement{piece.yarn, 0, {}});
-    const double length_m = millimetres_of_yarn(fabric, piece) * 1e-3;
+    const double length_m = (span.end - span.begin) * piece.segment_rest_length * fabric.diameter_mm * 1e-3;
     known->length_m += length_m;
     m.yarn_m += length_m;
     if (piece.linear_density_tex > 0) {
@@ -66,7 +63,7 @@ void measure_yarns(const Fabric& fabric, Measurements& m) {
     }
   }
   m.yarns = static_cast<int>(m.yarn.size());
-  if (!weighed) return;
+  if (!weighed || fabric.loops.empty()) return;
   m.mass_g = mass;
   m.areal_density_g_m2 = mass / (m.width_mm * m.height_mm) * 1e6;
   const double tex = mass / m.yarn_m * 1e3;  // the mean one, where yarns differ

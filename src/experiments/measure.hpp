@@ -9,7 +9,7 @@ namespace loopwright {
 
 struct YarnMeasurement {
   YarnId yarn;                   // in the graph; pieces of one yarn, as a window cuts them, count together
-  double length_m = 0;           // unloaded
+  double length_m = 0;           // unloaded, in the loops that are measured: without tails and frame
   std::optional<double> mass_g;  // absent: its linear density is unknown
 };
 
@@ -29,7 +29,7 @@ struct Measurements {
   double Kc = 0, Kw = 0, Ks = 0;
   double cover_factor = 0;            // share of the area that is covered by yarn, seen along z
   std::vector<YarnMeasurement> yarn;  // in the order of their first pieces
-  double yarn_m = 0;                  // unloaded length of all yarns
+  double yarn_m = 0;                  // of all yarns, likewise
   std::optional<double> mass_g, areal_density_g_m2;  // absent: a linear density is unknown
   std::optional<double> tightness_factor;            // sqrt(tex) / loop length in cm; absent as above
 };

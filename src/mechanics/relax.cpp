@@ -33,6 +33,10 @@ double smallest_clearance(const YarnModel& model, const YarnState& state, double
 ModelOptions at_radius(ModelOptions options, double radius) {
   options.material.contact.outer *= radius;
   options.material.contact.core *= radius;
+  // A thin frictionless yarn has room to slide into rest states that a thick one cannot leave (moss folded into itself);
+  // rubbing while it grows keeps it where the first geometry put it. At full radius the yarn's own friction counts.
+  constexpr double least_growing_friction = 0.3;
+  options.material.friction = std::max(options.material.friction, least_growing_friction);
   return options;
 }
 

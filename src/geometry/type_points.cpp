@@ -118,8 +118,16 @@ class LoopPlacer {
       const double aslant = std::clamp(3.6 * (1 - 2 * steep), 0.0, 1.0);
       const double shingle = (lower ? 0.6 : -0.6) * aslant;
       const double near_end = 2 - 1.35 * aslant, far_end = 2 - 1.15 * aslant;
-      leg(0.3, (lower ? far_end : near_end) * width, sign.early_rise, shingle);
-      leg(0.5, 2 * width, 1, 0);
+      const bool over_head = !lower && sign.early_rise > 0.5 && std::abs(lean) > 1.5;
+      if (over_head) {
+        // The upper leg leaves over its parents' heads before it changes the side.
+        const double ahead = lean > 0 ? 1 : -1;
+        points.push_back(point(id, LoopPart::leg, at_lower(id, ahead * 1.3, 3.1, sign.lower_leg + 0.6 * s)));
+        leg(0.42, near_end * width, 1, shingle);
+      } else {
+        leg(0.3, (lower ? far_end : near_end) * width, sign.early_rise, shingle);
+      }
+      if (!over_head) leg(0.5, 2 * width, 1, 0);
       leg(0.7, (lower ? near_end : far_end) * width, 1, -shingle);
     } else if (graph_.loop(id).head_count > 1) {
       const std::size_t i = id.position();

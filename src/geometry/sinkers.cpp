@@ -54,9 +54,10 @@ class SinkerPlacer {
       Vec3 middle = (begin + end_point) / 2;
       // Between two loops that go through one head both ways the sinker goes round that head's leg, below it.
       const Loop &first = graph_.loop(from), &second = graph_.loop(to);
-      const bool both_ways = first.side != second.side &&
-                             std::find_first_of(first.parents.begin(), first.parents.end(), second.parents.begin(),
-                                                second.parents.end()) != first.parents.end();
+      const bool both_ways =
+          first.side != second.side &&
+          std::find_first_of(first.parents.begin(), first.parents.end(), second.parents.begin(),
+                             second.parents.end()) != first.parents.end();
       if (both_ways) middle.y -= 2 * sy_;
       // A turn at a selvedge swings out a little.
       if (exit_side(from) == entry_side(to)) middle.x += exit_side(from) * 0.5 * sx_;

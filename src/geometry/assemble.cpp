@@ -68,10 +68,10 @@ double wales_of(const YarnGraph& graph, const std::vector<LoopId>& loops) {
 }
 
 double courses_of(const Layout& layout, const std::vector<LoopId>& loops, double wales) {
-  double faced = 0;
-  for (const LoopId id : loops) faced += layout.faced[id.position()];
+  double overlaid = 0;
+  for (const LoopId id : loops) overlaid += layout.overlaid[id.position()];
   const double count = static_cast<double>(loops.size());
-  return count / (wales * (1 + faced / count));
+  return count / (wales * (1 + overlaid / count));
 }
 
 CurveYarn empty_curve(const YarnGraph& graph, const GeometryOptions& options, int yarn) {

@@ -180,12 +180,17 @@ Eigen::VectorXd levels(const YarnGraph& graph, const GeometryOptions& options, N
   return rows.solve();
 }
 
-std::vector<std::uint8_t> faced_loops(const YarnGraph& graph) {
-  std::vector<std::uint8_t> faced(graph.loops.size(), 0);
+void mark_faced(const YarnGraph& graph, Layout& layout) {
+  layout.faced.assign(graph.loops.size(), 0);
+  layout.overlaid.assign(graph.loops.size(), 0);
   const std::vector<LoopId> facing = facing_loops(graph);
-  for (std::size_t i = 0; i < facing.size(); ++i)
-    if (facing[i].valid()) faced[i] = faced[facing[i].position()] = 1;
-  return faced;
+  for (std::size_t i = 0; i < facing.size(); ++i) {
+    if (!facing[i].valid()) continue;
+    const std::size_t other = facing[i].position();
+    layout.faced[i] = layout.faced[other] = 1;
+    if (std::abs(graph.loops[i].slot - graph.loops[other].slot) < 0.25)
+      layout.overlaid[i] = layout.overlaid[other] = 1;
+  }
 }
 
 // z of every node: the mean of the loops that have their feet there, by the bed that they were formed on; a
@@ -265,7 +270,7 @@ Layout lay_out(const YarnGraph& graph, const GeometryOptions& options) {
   bool front = false, back = false;
   for (const Loop& loop : graph.loops) (is_front(loop.bed) ? front : back) = true;
   layout.two_beds = front && back;
-  layout.faced = faced_loops(graph);
+  mark_faced(graph, layout);
   const std::vector<double> z = layout.two_beds ? node_heights(graph, options, nodes, layout.faced)
                                                 : std::vector<double>(2 * graph.loops.size(), 0);
   layout.slot_pitch = options.wale_pitch / slots_per_wale(graph);

@@ -16,9 +16,10 @@ struct Layout {
   std::vector<double> y_scale_lower,
       y_scale_upper;  // per loop: share of the template's height that there is room for
   std::vector<double> x_scale_lower, x_scale_upper;  // and of its width
-  std::vector<std::uint8_t> faced;  // per loop: 1 if a loop lay on the facing needle of the other bed
-  double slot_pitch = 1;            // x of one slot, in d
-  bool two_beds = false;            // loops were formed on both beds
+  std::vector<std::uint8_t> faced;     // per loop: 1 if a loop lay on the facing needle of the other bed
+  std::vector<std::uint8_t> overlaid;  // and at the same slot, so that the two wales lie over each other
+  double slot_pitch = 1;               // x of one slot, in d
+  bool two_beds = false;               // loops were formed on both beds
 };
 
 // O(loops) nodes; one sparse factorisation.

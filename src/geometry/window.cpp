@@ -11,8 +11,8 @@ namespace {
 
 // A tube: two layers, each knitted for itself, and at most turns the yarn goes over to the other bed.
 bool is_tube(const YarnGraph& graph, const Layout& layout) {
-  const auto faced = std::count(layout.faced.begin(), layout.faced.end(), 1);
-  if (2 * static_cast<std::size_t>(faced) < graph.loops.size()) return false;
+  const auto overlaid = std::count(layout.overlaid.begin(), layout.overlaid.end(), 1);
+  if (2 * static_cast<std::size_t>(overlaid) < graph.loops.size()) return false;
   int turns = 0, turns_over = 0, steps = 0, steps_over = 0;
   for (const GraphYarn& yarn : graph.yarns)
     for (std::size_t k = 0; k + 1 < yarn.loops.size(); ++k) {
@@ -70,13 +70,13 @@ LoopSelection middle_window(const YarnGraph& graph, const Layout& layout, int wa
 
   // Courses grow from the middle level until there are wales x courses loops, two layers counted as two.
   std::vector<double> levels;
-  double faced = 0;
+  double overlaid = 0;
   for (std::size_t i = 0; i < n; ++i) {
     if (selection[i] == 0) continue;
     levels.push_back(layout.lower[i].y);
-    faced += layout.faced[i];
+    overlaid += layout.overlaid[i];
   }
-  const double layers = 1 + faced / static_cast<double>(levels.size());
+  const double layers = 1 + overlaid / static_cast<double>(levels.size());
   const double wanted = static_cast<double>(columns) * courses * layers;
   if (wanted >= static_cast<double>(levels.size())) return selection;
   // An odd number of courses lies round a course, an even one round the gap between two: the better of the

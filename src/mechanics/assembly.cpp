@@ -22,8 +22,8 @@ Fraction operator+(const Fraction& a, const Fraction& b) { return {a[0] + b[0], 
 
 // H M for a 3 x 3 block H and M = [[xi, 0, eta], [0, eta, 0], [0, 0, 0]].
 Block times_measures(const Block& h, const Fraction& f) {
-  return {h[0] * f[0], h[1] * f[1], h[0] * f[1], h[3] * f[0], h[4] * f[1], h[3] * f[1],
-          h[6] * f[0], h[7] * f[1], h[6] * f[1]};
+  return {h[0] * f[0], h[1] * f[1], h[0] * f[1], h[3] * f[0], h[4] * f[1],
+          h[3] * f[1], h[6] * f[0], h[7] * f[1], h[6] * f[1]};
 }
 
 // out += M' C
@@ -58,7 +58,9 @@ int chunk_count(int nodes) { return std::clamp(nodes / 3000, 1, 16); }
 Assembly::Assembly(const YarnModel& model) : model_(model) {}
 
 double Assembly::law_scale(int a, int b) const {
-  const auto yarn = [&](int e) { return static_cast<std::size_t>(model_.yarn_of_segment[static_cast<std::size_t>(e)]); };
+  const auto yarn = [&](int e) {
+    return static_cast<std::size_t>(model_.yarn_of_segment[static_cast<std::size_t>(e)]);
+  };
   return 0.5 * (model_.yarns[yarn(a)].diameter + model_.yarns[yarn(b)].diameter);
 }
 
@@ -103,24 +105,28 @@ YarnState Assembly::moved(const YarnState& state, const Unknowns& step, double s
 
 Vec3 Assembly::remembered_slip(const SegmentPair& pair) const {
   const auto key = [](const SegmentPair& p) { return std::tie(p.a, p.b, p.m, p.n); };
-  const auto at = std::lower_bound(remembered_.begin(), remembered_.end(), pair,
-                                   [&](const FrictionContact& c, const SegmentPair& p) { return key(c.pair) < key(p); });
+  const auto at =
+      std::lower_bound(remembered_.begin(), remembered_.end(), pair,
+                       [&](const FrictionContact& c, const SegmentPair& p) { return key(c.pair) < key(p); });
   return at != remembered_.end() && key(at->pair) == key(pair) ? at->law.slip : Vec3{};
 }
 
-// Place of the contact on yarn a minus its place on yarn b, from the extended points of the state last prepared.
+// Place of the contact on yarn a minus its place on yarn b, from the extended points of the state last
+// prepared.
 Vec3 Assembly::relative_place(const FrictionContact& contact, const YarnState& state) const {
   const auto fa = static_cast<std::size_t>(model_.first[static_cast<std::size_t>(contact.pair.a)]);
   const auto fb = static_cast<std::size_t>(model_.first[static_cast<std::size_t>(contact.pair.b)]);
   Vec3 r = -state.lattice(contact.pair.m, contact.pair.n);
-  for (std::size_t k = 0; k < 4; ++k) r += contact.law.weight_a[k] * extended_[fa + k] - contact.law.weight_b[k] * extended_[fb + k];
+  for (std::size_t k = 0; k < 4; ++k)
+    r += contact.law.weight_a[k] * extended_[fa + k] - contact.law.weight_b[k] * extended_[fb + k];
   return r;
 }
 
 void Assembly::accept(const YarnState& state) {
   if (model_.friction == 0) return;
   expand(model_, state, extended_);
-  for (FrictionContact& contact : friction_) contact.law.slip = contact.law.slip_after(relative_place(contact, state));
+  for (FrictionContact& contact : friction_)
+    contact.law.slip = contact.law.slip_after(relative_place(contact, state));
   remembered_.clear();
   for (const FrictionContact& contact : friction_)
     if (contact.law.load > 0) remembered_.push_back(contact);
@@ -128,7 +134,8 @@ void Assembly::accept(const YarnState& state) {
 
 EnergyParts Assembly::energy(const YarnState& state) {
   EnergyParts parts = terms(state, nullptr, nullptr);
-  for (const FrictionContact& contact : friction_) parts.friction += contact.law.energy(relative_place(contact, state));
+  for (const FrictionContact& contact : friction_)
+    parts.friction += contact.law.energy(relative_place(contact, state));
   return parts;
 }
 
@@ -164,8 +171,11 @@ void Assembly::build_pattern(BlockMatrix& matrix) const {
   };
   each_block([&](std::int32_t i, std::int32_t) { ++start[static_cast<std::size_t>(i) + 1]; });
   for (std::size_t i = 0; i < nodes; ++i) start[i + 1] += start[i];
-  std::vector<std::int32_t> columns(static_cast<std::size_t>(start[nodes])), fill(start.begin(), start.end() - 1);
-  each_block([&](std::int32_t i, std::int32_t j) { columns[static_cast<std::size_t>(fill[static_cast<std::size_t>(i)]++)] = j; });
+  std::vector<std::int32_t> columns(static_cast<std::size_t>(start[nodes])),
+      fill(start.begin(), start.end() - 1);
+  each_block([&](std::int32_t i, std::int32_t j) {
+    columns[static_cast<std::size_t>(fill[static_cast<std::size_t>(i)]++)] = j;
+  });
   matrix.row_start.assign(nodes + 1, 0);
   matrix.column.clear();
   for (std::size_t i = 0; i < nodes; ++i) {
@@ -183,7 +193,8 @@ void Assembly::metric(BlockMatrix& matrix) const {
   constexpr double own_motion = 1e-3;  // keeps rigid motion and the sliding of whole yarns finite
   matrix.metric.assign(matrix.column.size(), 0);
   const auto add_to = [&](std::int32_t i, std::int32_t j, double v) {
-    const bool held_i = model_.held[static_cast<std::size_t>(i)], held_j = model_.held[static_cast<std::size_t>(j)];
+    const bool held_i = model_.held[static_cast<std::size_t>(i)],
+               held_j = model_.held[static_cast<std::size_t>(j)];
     if (held_i || held_j) return;
     matrix.metric[matrix.place(i, j)] += v;
   };
@@ -192,7 +203,8 @@ void Assembly::metric(BlockMatrix& matrix) const {
   for (const YarnModel::Yarn& yarn : model_.yarns) {
     const int links = yarn.periodic ? yarn.nodes : yarn.nodes - 1;
     for (int k = 0; k < links; ++k) {
-      const auto i = base_of(static_cast<std::size_t>(yarn.first_extended + k)), j = base_of(static_cast<std::size_t>(yarn.first_extended + k + 1));
+      const auto i = base_of(static_cast<std::size_t>(yarn.first_extended + k)),
+                 j = base_of(static_cast<std::size_t>(yarn.first_extended + k + 1));
       add_to(i, i, 1);
       add_to(j, j, 1);
       add_to(i, j, -1);
@@ -204,7 +216,8 @@ void Assembly::metric(BlockMatrix& matrix) const {
   for (const std::int32_t at : active_) {
     const SegmentPair& pair = pairs_[static_cast<std::size_t>(at)];
     if (pair.same_yarn) continue;
-    const auto fa = static_cast<std::size_t>(model_.first[static_cast<std::size_t>(pair.a)]), fb = static_cast<std::size_t>(model_.first[static_cast<std::size_t>(pair.b)]);
+    const auto fa = static_cast<std::size_t>(model_.first[static_cast<std::size_t>(pair.a)]),
+               fb = static_cast<std::size_t>(model_.first[static_cast<std::size_t>(pair.b)]);
     for (std::size_t k = 0; k < 4; ++k)
       for (std::size_t l = 0; l < 4; ++l) {
         const double w = middle[k] * middle[l];
@@ -239,16 +252,22 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
   const int chunks = chunk_count(model_.nodes);
   std::vector<Partial> partial(static_cast<std::size_t>(chunks));
   parallel_chunks(chunks, [&](int c) {
-    // This chunk owns control points [low, high): it alone writes their rows, and evaluates every element that has one.
+    // This chunk owns control points [low, high): it alone writes their rows, and evaluates every element
+    // that has one.
     const auto low = static_cast<std::int32_t>(static_cast<std::int64_t>(model_.nodes) * c / chunks);
     const auto high = static_cast<std::int32_t>(static_cast<std::int64_t>(model_.nodes) * (c + 1) / chunks);
     Partial& sums = partial[static_cast<std::size_t>(c)];
     const auto owned = [&](std::int32_t node) { return node >= low && node < high; };
-    const auto first_of = [&](int e) { return static_cast<std::size_t>(model_.first[static_cast<std::size_t>(e)]); };
-    const auto owns_segment = [&](int e) { return owned(model_.base[first_of(e)]); };  // for sums over segments
+    const auto first_of = [&](int e) {
+      return static_cast<std::size_t>(model_.first[static_cast<std::size_t>(e)]);
+    };
+    const auto owns_segment = [&](int e) {
+      return owned(model_.base[first_of(e)]);
+    };  // for sums over segments
     const auto touches = [&](int e) {
       const std::size_t f = first_of(e);
-      return owned(model_.base[f]) || owned(model_.base[f + 1]) || owned(model_.base[f + 2]) || owned(model_.base[f + 3]);
+      return owned(model_.base[f]) || owned(model_.base[f + 1]) || owned(model_.base[f + 2]) ||
+             owned(model_.base[f + 3]);
     };
     const auto add_gradient = [&](std::size_t k, const Vec3& f, bool whole) {  // k: extended point
       const auto node = model_.base[k];
@@ -259,7 +278,8 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
       sums.gradient[2] += fraction_[k][1] * f.x;
     };
     // Adds block h at (extended point k, extended point l with fraction fl); the row's owner keeps it.
-    const auto add_block = [&](std::size_t k, std::size_t l, const Block& h, const Fraction& fk, const Fraction& fl) {
+    const auto add_block = [&](std::size_t k, std::size_t l, const Block& h, const Fraction& fk,
+                               const Fraction& fl) {
       const auto row = model_.base[k];
       if (!owned(row)) return;
       add(matrix->block[matrix->place(row, model_.base[l])], h);
@@ -275,7 +295,8 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
       const bool whole = owns_segment(e);
       if (!whole && !gradient) continue;
       const std::size_t f = first_of(e);
-      const YarnModel::Yarn& yarn = model_.yarns[static_cast<std::size_t>(model_.yarn_of_segment[static_cast<std::size_t>(e)])];
+      const YarnModel::Yarn& yarn =
+          model_.yarns[static_cast<std::size_t>(model_.yarn_of_segment[static_cast<std::size_t>(e)])];
       SegmentDofs x;
       for (std::size_t k = 0; k < 4; ++k)
         for (std::size_t d = 0; d < 3; ++d) x[3 * k + d] = extended_[f + k][static_cast<int>(d)];
@@ -286,7 +307,8 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
         sums.energy.bend += bend.energy;
       }
       if (plates) {
-        const Plates element{model_.plates.stiffness, model_.plates.low, model_.plates.high, yarn.rest_length, model_.samples};
+        const Plates element{model_.plates.stiffness, model_.plates.low, model_.plates.high, yarn.rest_length,
+                             model_.samples};
         const LocalTerm<12> pushed = element.evaluate(x, model_.weights);
         if (whole) sums.energy.plates += pushed.energy;
         if (pushed.energy > 0)
@@ -297,8 +319,11 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
       }
       if (gradient)
         for (std::size_t k = 0; k < 4; ++k)
-          add_gradient(f + k, {stretch.gradient[3 * k] + bend.gradient[3 * k], stretch.gradient[3 * k + 1] + bend.gradient[3 * k + 1],
-                               stretch.gradient[3 * k + 2] + bend.gradient[3 * k + 2]}, whole);
+          add_gradient(f + k,
+                       {stretch.gradient[3 * k] + bend.gradient[3 * k],
+                        stretch.gradient[3 * k + 1] + bend.gradient[3 * k + 1],
+                        stretch.gradient[3 * k + 2] + bend.gradient[3 * k + 2]},
+                       whole);
       if (matrix)
         for (std::size_t k = 0; k < 4; ++k)
           for (std::size_t l = 0; l < 4; ++l) {
@@ -319,10 +344,14 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
       if (!touches_a && !touches_b) continue;
       const bool whole = owns_segment(pair.a);
       if (!whole && !gradient) continue;
-      const std::size_t a0 = static_cast<std::size_t>(pair.a * model_.samples), b0 = static_cast<std::size_t>(pair.b * model_.samples);
-      const YarnModel::Yarn& ya = model_.yarns[static_cast<std::size_t>(model_.yarn_of_segment[static_cast<std::size_t>(pair.a)])];
-      const YarnModel::Yarn& yb = model_.yarns[static_cast<std::size_t>(model_.yarn_of_segment[static_cast<std::size_t>(pair.b)])];
-      ContactPairInput in{{&places_.x[a0], &places_.y[a0], &places_.z[a0]}, {&places_.x[b0], &places_.y[b0], &places_.z[b0]}};
+      const std::size_t a0 = static_cast<std::size_t>(pair.a * model_.samples),
+                        b0 = static_cast<std::size_t>(pair.b * model_.samples);
+      const YarnModel::Yarn& ya =
+          model_.yarns[static_cast<std::size_t>(model_.yarn_of_segment[static_cast<std::size_t>(pair.a)])];
+      const YarnModel::Yarn& yb =
+          model_.yarns[static_cast<std::size_t>(model_.yarn_of_segment[static_cast<std::size_t>(pair.b)])];
+      ContactPairInput in{{&places_.x[a0], &places_.y[a0], &places_.z[a0]},
+                          {&places_.x[b0], &places_.y[b0], &places_.z[b0]}};
       const Vec3 image = state.lattice(pair.m, pair.n);
       in.image = {image.x, image.y, image.z};
       in.count = model_.samples;
@@ -360,7 +389,8 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
         Vec3 push;
         for (std::size_t i = 0; i < n; ++i) {
           const Vec3 fa_i{out.gradient_a[i][0], out.gradient_a[i][1], out.gradient_a[i][2]};
-          const double size_a = norm(fa_i), size_b = norm(Vec3{out.gradient_b[i][0], out.gradient_b[i][1], out.gradient_b[i][2]});
+          const double size_a = norm(fa_i),
+                       size_b = norm(Vec3{out.gradient_b[i][0], out.gradient_b[i][1], out.gradient_b[i][2]});
           force += size_a;
           rub_total_b += size_b;
           push += fa_i;
@@ -443,7 +473,8 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
   if (matrix) {
     constexpr Block identity{1, 0, 0, 0, 1, 0, 0, 0, 1};
     for (std::size_t i = 0; i < nodes; ++i) {
-      for (auto k = static_cast<std::size_t>(matrix->row_start[i]); k < static_cast<std::size_t>(matrix->row_start[i + 1]); ++k) {
+      for (auto k = static_cast<std::size_t>(matrix->row_start[i]);
+           k < static_cast<std::size_t>(matrix->row_start[i + 1]); ++k) {
         const auto j = static_cast<std::size_t>(matrix->column[k]);
         if (model_.held[i] || model_.held[j]) matrix->block[k] = i == j ? identity : Block{};
       }

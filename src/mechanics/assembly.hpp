@@ -1,8 +1,9 @@
 // Energy, gradient and Hessian of a whole fabric.
 //
-// Unknowns: a displacement u_i of every control point and a change g of the measures (width, height, skew), which carries
-// all points along affinely: x_i = u_i + M_i g with M_i = [[xi, 0, eta], [0, eta, 0], [0, 0, 0]] and (xi, eta) the
-// point's fractional coordinates, plus (m, n) for an image. Held points move with the measures only.
+// Unknowns: a displacement u_i of every control point and a change g of the measures (width, height, skew),
+// which carries all points along affinely: x_i = u_i + M_i g with M_i = [[xi, 0, eta], [0, eta, 0], [0, 0,
+// 0]] and (xi, eta) the point's fractional coordinates, plus (m, n) for an image. Held points move with the
+// measures only.
 #pragma once
 #include <vector>
 
@@ -30,17 +31,18 @@ class Assembly {
 
   // Infinite where two samples are inside a core.
   EnergyParts energy(const YarnState& state);
-  // Gradient (zero for what is held) and full Hessian; rows and columns of what is held are those of the identity. Only for the state that
-  // update_pairs() was last given: the pattern holds the pairs that are in contact there.
-  // With friction this also takes down every contact's load, normal and place: until the next call, energy() counts
-  // friction work from this state.
+  // Gradient (zero for what is held) and full Hessian; rows and columns of what is held are those of the
+  // identity. Only for the state that update_pairs() was last given: the pattern holds the pairs that are in
+  // contact there. With friction this also takes down every contact's load, normal and place: until the next
+  // call, energy() counts friction work from this state.
   EnergyParts hessian(const YarnState& state, Unknowns& gradient, BlockMatrix& hessian);
   // Moves the friction history along: the cloth has gone from the last Hessian's state to this one.
   void accept(const YarnState& state);
 
-  // The metric of steps, on the Hessian's pattern: squared relative motion of neighbouring control points along the yarn and of
-  // segments in contact, plus a little of the motion itself. What makes a step untrue is turning of yarn and sliding of
-  // contacts, so rigid and long-wave motion is all but free and step counts need not grow with the piece.
+  // The metric of steps, on the Hessian's pattern: squared relative motion of neighbouring control points
+  // along the yarn and of segments in contact, plus a little of the motion itself. What makes a step untrue
+  // is turning of yarn and sliding of contacts, so rigid and long-wave motion is all but free and step counts
+  // need not grow with the piece.
   void metric(BlockMatrix& hessian) const;
 
   // Places of contact samples in the last state given.
@@ -67,9 +69,10 @@ class Assembly {
 
   const YarnModel& model_;
   std::vector<SegmentPair> pairs_;
-  std::vector<std::int32_t> active_;           // pairs in contact in the last Hessian's state
-  std::vector<FrictionContact> friction_;      // one for each of these, if there is friction
-  std::vector<FrictionContact> remembered_;    // history: contacts of the last accepted step, sorted like pairs_
+  std::vector<std::int32_t> active_;       // pairs in contact in the last Hessian's state
+  std::vector<FrictionContact> friction_;  // one for each of these, if there is friction
+  std::vector<FrictionContact>
+      remembered_;  // history: contacts of the last accepted step, sorted like pairs_
   std::vector<Vec3> extended_;
   SamplePlaces places_;
   std::vector<std::array<double, 2>> fraction_;  // [extended]

@@ -1,5 +1,6 @@
-// Newton's method with an adaptive shift for one energy: the full Hessian plus a multiple of the identity, just large enough
-// to be positive definite and trusted; steps are cut so that no yarn passes through another, then by a line search.
+// Newton's method with an adaptive shift for one energy: the full Hessian plus a multiple of the identity,
+// just large enough to be positive definite and trusted; steps are cut so that no yarn passes through
+// another, then by a line search.
 #pragma once
 #include <functional>
 
@@ -11,7 +12,7 @@ namespace loopwright {
 struct NewtonOptions {
   double tolerance = 2e-4;
   int most_iterations = 100;
-  double stop_below = 0;           // energies below this decrease count as rest during continuation
+  double stop_below = 0;  // energies below this decrease count as rest during continuation
   std::function<bool(int iteration, double residual)> on_iteration;  // false: stop
 };
 
@@ -20,9 +21,10 @@ struct NewtonResult {
   double residual = 0, measure_residual = 0;
   int iterations = 0, linear_iterations = 0, factorisations = 0, crossings = 0;
   bool converged = false, stopped = false;
-  double shift = 0;                // the last shift, to start the next call from
+  double shift = 0;  // the last shift, to start the next call from
 };
 
-NewtonResult newton(const YarnModel& model, YarnState& state, const NewtonOptions& options, double first_shift);
+NewtonResult newton(const YarnModel& model, YarnState& state, const NewtonOptions& options,
+                    double first_shift);
 
 }  // namespace loopwright

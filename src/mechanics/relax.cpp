@@ -9,7 +9,8 @@
 namespace loopwright {
 namespace {
 
-// Smallest distance of contact samples of yarns that may touch, in units of their mean diameter; at most `most`.
+// Smallest distance of contact samples of yarns that may touch, in units of their mean diameter; at most
+// `most`.
 double smallest_clearance(const YarnModel& model, const YarnState& state, double most) {
   std::vector<Vec3> extended;
   SamplePlaces places;
@@ -33,8 +34,9 @@ double smallest_clearance(const YarnModel& model, const YarnState& state, double
 ModelOptions at_radius(ModelOptions options, double radius) {
   options.material.contact.outer *= radius;
   options.material.contact.core *= radius;
-  // A thin frictionless yarn has room to slide into rest states that a thick one cannot leave (moss folded into itself);
-  // rubbing while it grows keeps it where the first geometry put it. At full radius the yarn's own friction counts.
+  // A thin frictionless yarn has room to slide into rest states that a thick one cannot leave (moss folded
+  // into itself); rubbing while it grows keeps it where the first geometry put it. At full radius the yarn's
+  // own friction counts.
   constexpr double least_growing_friction = 0.3;
   options.material.friction = std::max(options.material.friction, least_growing_friction);
   return options;
@@ -74,7 +76,8 @@ RelaxResult relax(const Fabric& fabric, const RelaxOptions& options) {
     newton_options.most_iterations = std::min(iterations, options.most_iterations - result.newton_iterations);
     newton_options.on_iteration = [&](int i, double residual) {
       if (!options.on_progress) return true;
-      return options.on_progress({radius < 1 ? "grow-in" : "relax", result.newton_iterations + i, residual, radius});
+      return options.on_progress(
+          {radius < 1 ? "grow-in" : "relax", result.newton_iterations + i, residual, radius});
     };
     newton_result = newton(model, state, newton_options, shift);
     shift = std::max(newton_result.shift, 1e-3);
@@ -85,7 +88,8 @@ RelaxResult relax(const Fabric& fabric, const RelaxOptions& options) {
     result.stopped = newton_result.stopped;
   };
 
-  // Grow-in: the yarn starts so thin that its shell is pressed by no more than a quarter, and grows as room is made.
+  // Grow-in: the yarn starts so thin that its shell is pressed by no more than a quarter, and grows as room
+  // is made.
   if (options.grow_in) {
     constexpr double pressed = 0.75;
     double radius = 0;
@@ -102,8 +106,7 @@ RelaxResult relax(const Fabric& fabric, const RelaxOptions& options) {
       run(build_yarn_model(fabric, at_radius(model_options, radius)), radius, 0.1, 12);
     }
   }
-  if (!result.stopped && result.message.empty())
-    run(full, 1, options.tolerance, options.most_iterations);
+  if (!result.stopped && result.message.empty()) run(full, 1, options.tolerance, options.most_iterations);
 
   result.fabric = with_state(fabric, state);
   result.energy = newton_result.energy;
@@ -111,9 +114,10 @@ RelaxResult relax(const Fabric& fabric, const RelaxOptions& options) {
   result.measure_residual = newton_result.measure_residual;
   result.converged = newton_result.converged && result.message.empty() && !result.stopped;
   if (result.message.empty())
-    result.message = result.converged  ? "converged"
+    result.message = result.converged ? "converged"
                      : result.stopped ? "stopped"
-                                      : "not converged after " + std::to_string(result.newton_iterations) + " Newton steps";
+                                      : "not converged after " + std::to_string(result.newton_iterations) +
+                                            " Newton steps";
   return result;
 }
 

@@ -10,33 +10,34 @@
 namespace loopwright {
 
 struct RelaxProgress {
-  std::string phase;         // "grow-in" or "relax"
+  std::string phase;  // "grow-in" or "relax"
   int newton_iterations = 0;
-  double residual = 0;       // largest force on a control point, B/d^2
-  double radius = 1;         // share of the full yarn radius
+  double residual = 0;  // largest force on a control point, B/d^2
+  double radius = 1;    // share of the full yarn radius
 };
 
 struct RelaxOptions {
   ModelOptions model;
-  double tolerance = 2e-4;   // largest force on a control point that counts as rest, B/d^2
+  double tolerance = 2e-4;  // largest force on a control point that counts as rest, B/d^2
   int most_iterations = 1500;
-  bool grow_in = true;       // start with a thin yarn; false: the fabric is a saved state at full radius
-  // Finite pieces lie between two plates, this far (in d) beyond the first geometry's centrelines: plain cloth curls
-  // otherwise. Negative: no plates. Periodic cells need none.
+  bool grow_in = true;  // start with a thin yarn; false: the fabric is a saved state at full radius
+  // Finite pieces lie between two plates, this far (in d) beyond the first geometry's centrelines: plain
+  // cloth curls otherwise. Negative: no plates. Periodic cells need none.
   double plate_room = 0.25;
-  // Called after every iteration; returning false stops the run (what was reached is returned, not converged).
+  // Called after every iteration; returning false stops the run (what was reached is returned, not
+  // converged).
   std::function<bool(const RelaxProgress&)> on_progress;
 };
 
 struct RelaxResult {
   Fabric fabric;
-  EnergyParts energy;              // B/d
-  double residual = 0;             // largest force on a control point, B/d^2
-  double measure_residual = 0;     // largest dE/d(width or height) of one wale or course, B/d^2
+  EnergyParts energy;           // B/d
+  double residual = 0;          // largest force on a control point, B/d^2
+  double measure_residual = 0;  // largest dE/d(width or height) of one wale or course, B/d^2
   int newton_iterations = 0, linear_iterations = 0, factorisations = 0;
   bool converged = false, stopped = false;
-  int pass_throughs = 0;           // steps that could not be certified free of crossings: 0, or the result is broken
-  std::string message;             // why it ended, in words
+  int pass_throughs = 0;  // steps that could not be certified free of crossings: 0, or the result is broken
+  std::string message;    // why it ended, in words
 };
 
 // Throws std::invalid_argument on non-finite input or yarn data out of range.

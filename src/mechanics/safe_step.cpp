@@ -111,7 +111,7 @@ SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnS
                      sz = to.z[i0 + i] - from.z[i0 + i] - moved_image.z;
         for (std::size_t j = 0; j < count; ++j) {
           if (pair.same_yarn && std::abs(pair.arc_offset + (static_cast<double>(j) - static_cast<double>(i)) *
-                                                               spacing) < model.excluded)
+                                                               spacing) < model.excluded * yarn.diameter)
             continue;
           const double dx = x - from.x[j0 + j], dy = y - from.y[j0 + j], dz = z - from.z[j0 + j];
           const double d2 = dx * dx + dy * dy + dz * dz;

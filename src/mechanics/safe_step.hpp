@@ -1,23 +1,25 @@
 // How far a step may go so that no yarn passes through another.
 //
-// A straight motion of all points from x to x + s (0 to 1) cannot carry yarn a through yarn b while, for every pair of their
-// points, the relative motion stays below their distance. Checked at the contact samples (0.18 d apart) of every
-// pair of segments within the list's range, with distances lowered by what samples can miss; all other pairs are farther apart than
-// the range, so that motion beyond an affine map (which moves no yarn through another) is capped by the range.
+// A straight motion of all points from x to x + s (0 to 1) cannot carry yarn a through yarn b while, for
+// every pair of their points, the relative motion stays below their distance. Checked at the contact samples
+// (0.18 d apart) of every pair of segments within the list's range, with distances lowered by what samples
+// can miss; all other pairs are farther apart than the range, so that motion beyond an affine map (which
+// moves no yarn through another) is capped by the range.
 #pragma once
 #include "mechanics/assembly.hpp"
 
 namespace loopwright {
 
 struct SafeStep {
-  double scale = 1;        // the largest allowed multiple of the step, at most 1
-  double pair_ratio = 0;   // relative motion over distance of the worst pair at scale 1
-  double loose_motion = 0; // largest motion beyond the best affine map at scale 1, in d
+  double scale = 1;         // the largest allowed multiple of the step, at most 1
+  double pair_ratio = 0;    // relative motion over distance of the worst pair at scale 1
+  double loose_motion = 0;  // largest motion beyond the best affine map at scale 1, in d
   int worst_a = -1, worst_b = -1;
 };
 
-// `assembly` has its pairs within `range` of this state. `share` (below 1): part of a distance that may be used up.
-SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnState& state, const YarnState& target,
-                   double range, double outer_diameter, double share);
+// `assembly` has its pairs within `range` of this state. `share` (below 1): part of a distance that may be
+// used up.
+SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnState& state,
+                   const YarnState& target, double range, double outer_diameter, double share);
 
 }  // namespace loopwright

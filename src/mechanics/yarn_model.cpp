@@ -19,17 +19,21 @@ void check_material(const YarnMaterial& m) {
   require(positive(m.contact.outer) && positive(m.contact.core) && m.contact.core < m.contact.outer,
           "the contact core must be thinner than the outer diameter, and both positive");
   require(positive(m.contact.stiffness), "contact stiffness must be a positive number");
-  require(std::isfinite(m.friction) && m.friction >= 0 && m.friction <= 5, "the friction coefficient must be from 0 to 5");
-  require(std::isfinite(m.contact.exponent) && m.contact.exponent > 1, "the contact exponent must be above 1");
+  require(std::isfinite(m.friction) && m.friction >= 0 && m.friction <= 5,
+          "the friction coefficient must be from 0 to 5");
+  require(std::isfinite(m.contact.exponent) && m.contact.exponent > 1,
+          "the contact exponent must be above 1");
 }
 
 void check_yarn(const Fabric& fabric, const FabricYarn& yarn) {
   require(yarn.segments() >= 1, "a yarn needs at least 4 control points (periodic: at least 1)");
-  require(!yarn.periodic || yarn.control_points.size() >= 4, "a periodic yarn needs at least 4 control points");
+  require(!yarn.periodic || yarn.control_points.size() >= 4,
+          "a periodic yarn needs at least 4 control points");
   require(!yarn.periodic || fabric.periodic, "a periodic yarn in a fabric that is not periodic");
   require(std::isfinite(yarn.segment_rest_length) && yarn.segment_rest_length > 0,
           "the rest length of a yarn must be a positive number");
-  require(std::isfinite(yarn.diameter) && yarn.diameter > 0, "the diameter of a yarn must be a positive number");
+  require(std::isfinite(yarn.diameter) && yarn.diameter > 0,
+          "the diameter of a yarn must be a positive number");
   for (const Vec3& p : yarn.control_points) require(is_finite(p), "a control point is not a finite number");
 }
 
@@ -40,8 +44,10 @@ YarnModel build_yarn_model(const Fabric& fabric, const ModelOptions& options) {
   require(!fabric.yarns.empty(), "the fabric has no yarn");
   require(std::isfinite(fabric.width) && std::isfinite(fabric.height) && std::isfinite(fabric.skew),
           "the fabric's width, height or skew is not a finite number");
-  require(!fabric.periodic || (fabric.width > 0 && fabric.height > 0), "a periodic cell needs a positive width and height");
-  require(std::isfinite(options.sample_spacing) && options.sample_spacing > 0, "the contact sample spacing must be positive");
+  require(!fabric.periodic || (fabric.width > 0 && fabric.height > 0),
+          "a periodic cell needs a positive width and height");
+  require(std::isfinite(options.sample_spacing) && options.sample_spacing > 0,
+          "the contact sample spacing must be positive");
 
   require(std::isfinite(options.plates.stiffness) && options.plates.stiffness >= 0 &&
               (options.plates.stiffness == 0 || options.plates.low < options.plates.high),
@@ -67,8 +73,8 @@ YarnModel build_yarn_model(const Fabric& fabric, const ModelOptions& options) {
     y.shift = yarn.shift;
     y.rest_length = yarn.segment_rest_length;
     y.diameter = yarn.diameter;
-    // Yarns of one fibre: stretch stiffness grows with the section, and so does the bend stiffness of spun yarn
-    // whose fibres slide (physics of B_min ~ linear density).
+    // Yarns of one fibre: stretch stiffness grows with the section, and so does the bend stiffness of spun
+    // yarn whose fibres slide (physics of B_min ~ linear density).
     y.stretch_stiffness = options.material.stretch_stiffness * area;
     y.bend_stiffness = options.material.bend_stiffness * area;
     longest_segment = std::max(longest_segment, y.rest_length);
@@ -77,14 +83,16 @@ YarnModel build_yarn_model(const Fabric& fabric, const ModelOptions& options) {
     for (int i = 0; i < y.nodes + ghosts; ++i) {
       const int turn = i / y.nodes;
       model.base.push_back(y.first_node + i % y.nodes);
-      model.image.push_back({static_cast<std::int8_t>(turn * yarn.shift[0]), static_cast<std::int8_t>(turn * yarn.shift[1])});
+      model.image.push_back(
+          {static_cast<std::int8_t>(turn * yarn.shift[0]), static_cast<std::int8_t>(turn * yarn.shift[1])});
     }
     for (int e = 0; e < y.segments; ++e) {
       model.first.push_back(y.first_extended + e);
       model.yarn_of_segment.push_back(static_cast<std::int32_t>(model.yarns.size()));
     }
     for (int i = 0; i < y.nodes; ++i)
-      model.held.push_back(i < static_cast<int>(yarn.held.size()) ? yarn.held[static_cast<std::size_t>(i)] : std::uint8_t{0});
+      model.held.push_back(i < static_cast<int>(yarn.held.size()) ? yarn.held[static_cast<std::size_t>(i)]
+                                                                  : std::uint8_t{0});
     model.nodes += y.nodes;
     model.segments += y.segments;
     model.extended += y.nodes + ghosts;

@@ -11,7 +11,8 @@
 
 namespace loopwright {
 
-// Which of the fabric's outer measures are unknowns. Periodic cells: the lattice; held pieces: the stretch of the frame.
+// Which of the fabric's outer measures are unknowns. Periodic cells: the lattice; held pieces: the stretch of
+// the frame.
 struct FreeMeasures {
   bool width = true, height = true, skew = false;
 };
@@ -31,38 +32,39 @@ struct YarnMaterial {
 
 struct YarnModel {
   struct Yarn {
-    int first_node = 0, nodes = 0;          // control points
+    int first_node = 0, nodes = 0;  // control points
     int first_segment = 0, segments = 0;
-    int first_extended = 0;                 // see `base`
+    int first_extended = 0;  // see `base`
     bool periodic = false;
     std::array<int, 2> shift{0, 0};
-    double rest_length = 1;                 // of a segment
+    double rest_length = 1;  // of a segment
     double diameter = 1;
     double stretch_stiffness = 3000, bend_stiffness = 1;
   };
   std::vector<Yarn> yarns;
   int nodes = 0, segments = 0, extended = 0;
 
-  // Extended control points: per yarn its control points and, if periodic, the first three again, shifted. So the
-  // four control points of any segment lie at extended places first[e] .. first[e] + 3.
-  std::vector<std::int32_t> base;                  // [extended] control point
-  std::vector<std::array<std::int8_t, 2>> image;   // [extended] lattice shift
-  std::vector<std::int32_t> first;                 // [segment] first extended control point
-  std::vector<std::int32_t> yarn_of_segment;       // [segment]
-  std::vector<std::uint8_t> held;                  // [node]
+  // Extended control points: per yarn its control points and, if periodic, the first three again, shifted. So
+  // the four control points of any segment lie at extended places first[e] .. first[e] + 3.
+  std::vector<std::int32_t> base;                 // [extended] control point
+  std::vector<std::array<std::int8_t, 2>> image;  // [extended] lattice shift
+  std::vector<std::int32_t> first;                // [segment] first extended control point
+  std::vector<std::int32_t> yarn_of_segment;      // [segment]
+  std::vector<std::uint8_t> held;                 // [node]
 
   ContactLaw contact;
   double friction = 0;
-  int samples = 8;                                 // contact samples per segment
-  SampleWeights weights{};                         // spline weights of the samples
-  double excluded = 1.9634954084936207;            // same-yarn pairs closer than this (1.25 pi/2 d) along the yarn do not touch
+  int samples = 8;          // contact samples per segment
+  SampleWeights weights{};  // spline weights of the samples
+  double excluded =
+      1.9634954084936207;  // same-yarn pairs closer than this (1.25 pi/2 d) along the yarn do not touch
   bool periodic = false;
   FreeMeasures free;
   FlatPlates plates;
 };
 
 struct YarnState {
-  std::vector<Vec3> nodes;                         // [node] control points
+  std::vector<Vec3> nodes;  // [node] control points
   double width = 0, height = 0, skew = 0;
 
   Vec3 lattice(int m, int n) const { return {m * width + n * skew, n * height, 0}; }

@@ -22,7 +22,8 @@ struct ImagedSegment {
 Box box_of(const YarnModel& model, const SamplePlaces& places, int segment) {
   const auto begin = static_cast<std::size_t>(segment * model.samples);
   const auto end = begin + static_cast<std::size_t>(model.samples);
-  Box box{{places.x[begin], places.y[begin], places.z[begin]}, {places.x[begin], places.y[begin], places.z[begin]}};
+  Box box{{places.x[begin], places.y[begin], places.z[begin]},
+          {places.x[begin], places.y[begin], places.z[begin]}};
   for (std::size_t k = begin + 1; k < end; ++k) {
     const std::array<double, 3> p{places.x[k], places.y[k], places.z[k]};
     for (std::size_t c = 0; c < 3; ++c) {
@@ -40,7 +41,8 @@ bool apart(const Box& a, const Box& b, double range) {
 }
 
 double smallest_distance2(const YarnModel& model, const SamplePlaces& p, int a, int b, const Vec3& image) {
-  const auto i0 = static_cast<std::size_t>(a * model.samples), j0 = static_cast<std::size_t>(b * model.samples);
+  const auto i0 = static_cast<std::size_t>(a * model.samples),
+             j0 = static_cast<std::size_t>(b * model.samples);
   const auto count = static_cast<std::size_t>(model.samples);
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t i = i0; i < i0 + count; ++i) {
@@ -63,8 +65,8 @@ bool turns_ahead(const YarnModel::Yarn& yarn, int m, int n, int& turns) {
   return turns != 0 && turns * sm == m && turns * sn == n;
 }
 
-std::vector<ImagedSegment> imaged_segments(const YarnModel& model, const YarnState& state, const SamplePlaces& places,
-                                           double range, Box& whole) {
+std::vector<ImagedSegment> imaged_segments(const YarnModel& model, const YarnState& state,
+                                           const SamplePlaces& places, double range, Box& whole) {
   std::vector<ImagedSegment> all;
   whole = {{1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}};
   for (int e = 0; e < model.segments; ++e) {
@@ -75,9 +77,11 @@ std::vector<ImagedSegment> imaged_segments(const YarnModel& model, const YarnSta
     }
   }
   if (!model.periodic) return all;
-  const int reach_n = std::min(100, static_cast<int>(std::ceil((whole.high[1] - whole.low[1] + range) / state.height)));
+  const int reach_n =
+      std::min(100, static_cast<int>(std::ceil((whole.high[1] - whole.low[1] + range) / state.height)));
   const double skewed = reach_n * std::abs(state.skew);
-  const int reach_m = std::min(100, static_cast<int>(std::ceil((whole.high[0] - whole.low[0] + range + skewed) / state.width)));
+  const int reach_m = std::min(
+      100, static_cast<int>(std::ceil((whole.high[0] - whole.low[0] + range + skewed) / state.width)));
   // Only the images after (0, 0): (a, b, image) and (b, a, -image) are the same pair.
   for (int n = -reach_n; n <= reach_n; ++n)
     for (int m = -reach_m; m <= reach_m; ++m) {
@@ -102,7 +106,8 @@ void expand(const YarnModel& model, const YarnState& state, std::vector<Vec3>& e
   extended.resize(static_cast<std::size_t>(model.extended));
   for (std::size_t k = 0; k < extended.size(); ++k) {
     extended[k] = state.nodes[static_cast<std::size_t>(model.base[k])];
-    if (model.image[k][0] != 0 || model.image[k][1] != 0) extended[k] += state.lattice(model.image[k][0], model.image[k][1]);
+    if (model.image[k][0] != 0 || model.image[k][1] != 0)
+      extended[k] += state.lattice(model.image[k][0], model.image[k][1]);
   }
 }
 
@@ -123,8 +128,8 @@ void place_samples(const YarnModel& model, const std::vector<Vec3>& extended, Sa
   }
 }
 
-void find_segment_pairs(const YarnModel& model, const YarnState& state, const SamplePlaces& places, double range,
-                        std::vector<SegmentPair>& pairs) {
+void find_segment_pairs(const YarnModel& model, const YarnState& state, const SamplePlaces& places,
+                        double range, std::vector<SegmentPair>& pairs) {
   pairs.clear();
   Box whole;
   const std::vector<ImagedSegment> all = imaged_segments(model, state, places, range, whole);
@@ -133,7 +138,8 @@ void find_segment_pairs(const YarnModel& model, const YarnState& state, const Sa
   double extent = 0;
   for (int e = 0; e < model.segments; ++e)
     for (std::size_t c = 0; c < 3; ++c)
-      extent = std::max(extent, all[static_cast<std::size_t>(e)].box.high[c] - all[static_cast<std::size_t>(e)].box.low[c]);
+      extent = std::max(
+          extent, all[static_cast<std::size_t>(e)].box.high[c] - all[static_cast<std::size_t>(e)].box.low[c]);
   const double cell = range + extent;
   std::array<double, 3> origin;
   std::array<int, 3> size;
@@ -150,10 +156,13 @@ void find_segment_pairs(const YarnModel& model, const YarnState& state, const Sa
   };
   const auto cell_index = [&](int i, int j, int k) {
     return (static_cast<std::size_t>(k) * static_cast<std::size_t>(size[1]) + static_cast<std::size_t>(j)) *
-               static_cast<std::size_t>(size[0]) + static_cast<std::size_t>(i);
+               static_cast<std::size_t>(size[0]) +
+           static_cast<std::size_t>(i);
   };
   std::vector<std::int32_t> start(static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) *
-                                      static_cast<std::size_t>(size[2]) + 1, 0);
+                                          static_cast<std::size_t>(size[2]) +
+                                      1,
+                                  0);
   std::vector<std::size_t> where(all.size());
   std::array<int, 3> at;
   for (std::size_t s = 0; s < all.size(); ++s) {
@@ -163,12 +172,14 @@ void find_segment_pairs(const YarnModel& model, const YarnState& state, const Sa
   }
   for (std::size_t i = 1; i < start.size(); ++i) start[i] += start[i - 1];
   std::vector<std::int32_t> sorted(all.size()), fill(start.begin(), start.end() - 1);
-  for (std::size_t s = 0; s < all.size(); ++s) sorted[static_cast<std::size_t>(fill[where[s]]++)] = static_cast<std::int32_t>(s);
+  for (std::size_t s = 0; s < all.size(); ++s)
+    sorted[static_cast<std::size_t>(fill[where[s]]++)] = static_cast<std::int32_t>(s);
 
   const double range2 = range * range;
   for (int a = 0; a < model.segments; ++a) {
     const Box& box = all[static_cast<std::size_t>(a)].box;
-    const YarnModel::Yarn& yarn = model.yarns[static_cast<std::size_t>(model.yarn_of_segment[static_cast<std::size_t>(a)])];
+    const YarnModel::Yarn& yarn =
+        model.yarns[static_cast<std::size_t>(model.yarn_of_segment[static_cast<std::size_t>(a)])];
     cell_of(box, at);
     for (int k = std::max(at[2] - 1, 0); k <= std::min(at[2] + 1, size[2] - 1); ++k)
       for (int j = std::max(at[1] - 1, 0); j <= std::min(at[1] + 1, size[1] - 1); ++j)
@@ -184,14 +195,17 @@ void find_segment_pairs(const YarnModel& model, const YarnState& state, const Sa
             pair.m = other.m;
             pair.n = other.n;
             int turns = 0;
-            if (model.yarn_of_segment[static_cast<std::size_t>(a)] == model.yarn_of_segment[static_cast<std::size_t>(other.segment)] &&
+            if (model.yarn_of_segment[static_cast<std::size_t>(a)] ==
+                    model.yarn_of_segment[static_cast<std::size_t>(other.segment)] &&
                 turns_ahead(yarn, other.m, other.n, turns)) {
               const int ahead = other.segment - a + turns * yarn.segments;
-              if ((std::abs(ahead) + 1) * yarn.rest_length <= model.excluded) continue;
-              pair.same_yarn = (std::abs(ahead) - 1) * yarn.rest_length < model.excluded;
+              const double excluded = model.excluded * yarn.diameter;
+              if ((std::abs(ahead) + 1) * yarn.rest_length <= excluded) continue;
+              pair.same_yarn = (std::abs(ahead) - 1) * yarn.rest_length < excluded;
               pair.arc_offset = ahead * yarn.rest_length;
             }
-            pair.distance2 = smallest_distance2(model, places, a, other.segment, state.lattice(other.m, other.n));
+            pair.distance2 =
+                smallest_distance2(model, places, a, other.segment, state.lattice(other.m, other.n));
             if (pair.distance2 < range2) pairs.push_back(pair);
           }
         }

@@ -16,17 +16,18 @@ struct SamplePlaces {
 struct SegmentPair {
   std::int32_t a = 0, b = 0;
   std::int8_t m = 0, n = 0;
-  bool same_yarn = false;     // the image continues a's own yarn: arc_offset is then meant
-  double arc_offset = 0;      // arc of b's first sample minus that of a's first sample along the unwrapped yarn
-  double distance2 = 0;       // smallest squared distance of samples when the list was made
+  bool same_yarn = false;  // the image continues a's own yarn: arc_offset is then meant
+  double arc_offset = 0;   // arc of b's first sample minus that of a's first sample along the unwrapped yarn
+  double distance2 = 0;    // smallest squared distance of samples when the list was made
 };
 
 void expand(const YarnModel& model, const YarnState& state, std::vector<Vec3>& extended);
 void place_samples(const YarnModel& model, const std::vector<Vec3>& extended, SamplePlaces& places);
 
-// All pairs with some samples closer than `range` that can touch (same-yarn pairs wholly inside the excluded arc are
-// left out), sorted by (a, b, m, n). Uniform grid of cells over segments and the lattice images that reach the piece.
-void find_segment_pairs(const YarnModel& model, const YarnState& state, const SamplePlaces& places, double range,
-                        std::vector<SegmentPair>& pairs);
+// All pairs with some samples closer than `range` that can touch (same-yarn pairs wholly inside the excluded
+// arc are left out), sorted by (a, b, m, n). Uniform grid of cells over segments and the lattice images that
+// reach the piece.
+void find_segment_pairs(const YarnModel& model, const YarnState& state, const SamplePlaces& places,
+                        double range, std::vector<SegmentPair>& pairs);
 
 }  // namespace loopwright

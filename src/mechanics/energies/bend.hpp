@@ -1,7 +1,8 @@
 // Bending of one spline segment of rest length h, straight when unloaded:
 //   U = 1/2 B int kappa^2 ds0 = 1/2 B h int kappa^2 du,   kappa^2 = |p' x p''|^2 / |p'|^6
 // B: bend stiffness (1 in the model's units, energies in B/d). 4-point Gauss.
-// With A = p'.p', C = p'.p'', D = p''.p'': kappa^2 = f = D A^-2 - C^2 A^-3; derivatives follow by the chain rule.
+// With A = p'.p', C = p'.p'', D = p''.p'': kappa^2 = f = D A^-2 - C^2 A^-3; derivatives follow by the chain
+// rule.
 #pragma once
 #include "mechanics/energies/energy.hpp"
 
@@ -30,8 +31,8 @@ struct Bend {
       const double w = 0.5 * gauss_weight[g] * stiffness * rest_length;
       const double i1 = 1 / A, i2 = i1 * i1, i3 = i2 * i1, i4 = i2 * i2;
       const double f_A = w * (-2 * D * i3 + 3 * C * C * i4), f_C = w * (-2 * C * i3), f_D = w * i2;
-      const double f_AA = w * (6 * D * i4 - 12 * C * C * i4 * i1), f_AC = w * 6 * C * i4, f_AD = w * (-2 * i3),
-                   f_CC = w * (-2 * i3);
+      const double f_AA = w * (6 * D * i4 - 12 * C * C * i4 * i1), f_AC = w * 6 * C * i4,
+                   f_AD = w * (-2 * i3), f_CC = w * (-2 * i3);
       term.energy += w * (D * i2 - C * C * i3);
 
       std::array<double, 3> da{}, db{};

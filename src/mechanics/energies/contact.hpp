@@ -3,9 +3,10 @@
 // With phi per length of both yarns (laws/contact_law.hpp) this is the midpoint rule for the double integral.
 // Geometry (distances) knows no stiffness, the law knows no geometry, and nothing is allocated.
 //
-// Cost per pair of segments with n samples each: n^2 squared distances (8 flops), and for each pair of samples in
-// contact about 90 flops for force and Hessian. Hessians of one side are summed per sample and folded into control points once
-// per segment by the assembler; the blocks between the sides are summed per pair of segments.
+// Cost per pair of segments with n samples each: n^2 squared distances (8 flops), and for each pair of
+// samples in contact about 90 flops for force and Hessian. Hessians of one side are summed per sample and
+// folded into control points once per segment by the assembler; the blocks between the sides are summed per
+// pair of segments.
 #pragma once
 #include <array>
 #include <cmath>
@@ -21,7 +22,8 @@ inline constexpr int most_contact_samples = 24;  // per segment
 // A symmetric 3 x 3 matrix: xx, xy, xz, yy, yz, zz.
 using Symmetric3 = std::array<double, 6>;
 
-// Samples of a segment: places and the spline weights of each sample, shared by all segments with `count` samples.
+// Samples of a segment: places and the spline weights of each sample, shared by all segments with `count`
+// samples.
 struct SampleView {
   const double* x;
   const double* y;
@@ -81,7 +83,8 @@ inline double contact_energy(const ContactPairInput& in, const ContactLaw& law) 
   return in.weight * energy;
 }
 
-// Energy, gradient and, if `with_hessian`, Hessian. `out.active` is false (and nothing else is set) without contact.
+// Energy, gradient and, if `with_hessian`, Hessian. `out.active` is false (and nothing else is set) without
+// contact.
 inline void contact_terms(const ContactPairInput& in, const ContactLaw& law, const SampleWeights& weights,
                           bool with_hessian, ContactPairOutput& out) {
   const double outer2 = law.outer * law.outer;
@@ -102,8 +105,8 @@ inline void contact_terms(const ContactPairInput& in, const ContactLaw& law, con
     bool row_active = false;
     for (std::size_t j = 0; j < n; ++j) {
       if (d2[j] >= outer2) continue;
-      if (in.excluded > 0 &&
-          std::abs(in.arc_offset + (static_cast<double>(j) - static_cast<double>(i)) * in.spacing) < in.excluded)
+      if (in.excluded > 0 && std::abs(in.arc_offset + (static_cast<double>(j) - static_cast<double>(i)) *
+                                                          in.spacing) < in.excluded)
         continue;
       if (!out.active) {
         out.active = true;
@@ -127,8 +130,8 @@ inline void contact_terms(const ContactPairInput& in, const ContactLaw& law, con
       out.gradient_b[j][2] -= f * nz;
       if (!with_hessian) continue;
       const double across = f * inv, along = in.weight * v.curvature - across;
-      const Symmetric3 K{along * nx * nx + across, along * nx * ny,          along * nx * nz,
-                         along * ny * ny + across, along * ny * nz,          along * nz * nz + across};
+      const Symmetric3 K{along * nx * nx + across, along * nx * ny, along * nx * nz,
+                         along * ny * ny + across, along * ny * nz, along * nz * nz + across};
       for (std::size_t c = 0; c < 6; ++c) {
         out.hessian_a[i][c] += K[c];
         out.hessian_b[j][c] += K[c];

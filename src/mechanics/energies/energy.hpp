@@ -1,5 +1,6 @@
 // What an energy gives for one element: value, gradient and full (not projected) Hessian in the element's own
-// coordinates. Elements are pure functions and allocate nothing; one assembler and one derivative check serve all.
+// coordinates. Elements are pure functions and allocate nothing; one assembler and one derivative check serve
+// all.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -29,8 +30,8 @@ constexpr SplineWeights spline_weights(double u) {
 }
 
 // 4-point Gauss rule on [0, 1]: exact for the degree-7 polynomials of mass matrices, ample for bending.
-inline constexpr std::array<double, 4> gauss_node{0.069431844202973712, 0.33000947820757187, 0.66999052179242813,
-                                                  0.93056815579702629};
+inline constexpr std::array<double, 4> gauss_node{0.069431844202973712, 0.33000947820757187,
+                                                  0.66999052179242813, 0.93056815579702629};
 inline constexpr std::array<double, 4> gauss_weight{0.17392742256872693, 0.32607257743127307,
                                                     0.32607257743127307, 0.17392742256872693};
 inline constexpr std::array<SplineWeights, 4> gauss_spline{

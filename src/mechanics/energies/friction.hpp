@@ -3,12 +3,13 @@
 //   U = mu N e [ F(|u|/e) - F(|s|/e) ],   u = P (s + r - r0),   P = I - n n'
 //   F(y) = y^2 - y^3/3 for y < 1,  y - 1/3 beyond;   force mu N F'(y): 2y - y^2 for y < 1, then mu N
 //
-// r: place of the contact point of yarn a minus that of yarn b; r0: the same where the step starts; s: elastic slip there (history);
-// n: contact normal; N: contact force; mu: friction coefficient; e: elastic slip at which the contact slides.
-// Below e the contact sticks on a short spring, so a loaded cloth does not creep. N, n and the contact's places on the yarns
-// are those of the step's start; after the step s becomes u, cut to e where the contact has slid: its anchor is
-// dragged along and the force stays at mu N exactly. At rest all forces are inside the friction cone.
-// Source: anchored springs as in Cirio et al. 2014; the curve F' as in Li et al. 2020 (incremental potential contact).
+// r: place of the contact point of yarn a minus that of yarn b; r0: the same where the step starts; s:
+// elastic slip there (history); n: contact normal; N: contact force; mu: friction coefficient; e: elastic
+// slip at which the contact slides. Below e the contact sticks on a short spring, so a loaded cloth does not
+// creep. N, n and the contact's places on the yarns are those of the step's start; after the step s becomes
+// u, cut to e where the contact has slid: its anchor is dragged along and the force stays at mu N exactly. At
+// rest all forces are inside the friction cone. Source: anchored springs as in Cirio et al. 2014; the curve
+// F' as in Li et al. 2020 (incremental potential contact).
 #pragma once
 #include <array>
 #include <cmath>
@@ -22,9 +23,9 @@ struct Friction {
   static constexpr const char* name = "friction";
   static constexpr std::size_t dofs = 24;
 
-  double load = 0;                        // mu N
-  double softness = 0.02;                 // e, in d
-  Vec3 normal{0, 0, 1}, slip, start;      // n, s, r0
+  double load = 0;                               // mu N
+  double softness = 0.02;                        // e, in d
+  Vec3 normal{0, 0, 1}, slip, start;             // n, s, r0
   std::array<double, 4> weight_a{}, weight_b{};  // spline weights of the contact's places
 
   Vec3 tangential(const Vec3& v) const { return v - dot(v, normal) * normal; }
@@ -45,8 +46,9 @@ struct Friction {
     const double y = norm(u) / softness, k = y < 1 ? load / softness * (2 - y) : load / (y * softness);
     const double along = y < 1 ? load / softness * (2 - 2 * y) : 0;
     const double c = y > 0 ? (k - along) / squared_norm(u) : 0;
-    return {k * (1 - n.x * n.x) - c * u.x * u.x, -k * n.x * n.y - c * u.x * u.y, -k * n.x * n.z - c * u.x * u.z,
-            k * (1 - n.y * n.y) - c * u.y * u.y, -k * n.y * n.z - c * u.y * u.z, k * (1 - n.z * n.z) - c * u.z * u.z};
+    return {k * (1 - n.x * n.x) - c * u.x * u.x, -k * n.x * n.y - c * u.x * u.y,
+            -k * n.x * n.z - c * u.x * u.z,      k * (1 - n.y * n.y) - c * u.y * u.y,
+            -k * n.y * n.z - c * u.y * u.z,      k * (1 - n.z * n.z) - c * u.z * u.z};
   }
   // History after the contact has moved to r.
   Vec3 slip_after(const Vec3& r) const {

@@ -1,7 +1,9 @@
-// Two flat plates between which a piece lies, so that it does not curl: centrelines beyond a plate are pushed back,
-//   U = 1/2 k h int max(z - high, low - z, 0)^2 du   over a segment of rest length h (midpoint samples, u in [0, 1])
-// k: stiffness of the plates per length of yarn (unit B/d^4 in the model). Plain fabric curls because its bending moments
-// do not cancel; between plates it lies flat, as a swatch does that is measured.
+// Two flat plates between which a piece lies, so that it does not curl: centrelines beyond a plate are pushed
+// back,
+//   U = 1/2 k h int max(z - high, low - z, 0)^2 du   over a segment of rest length h (midpoint samples, u in
+//   [0, 1])
+// k: stiffness of the plates per length of yarn (unit B/d^4 in the model). Plain fabric curls because its
+// bending moments do not cancel; between plates it lies flat, as a swatch does that is measured.
 #pragma once
 #include "mechanics/energies/contact.hpp"
 #include "mechanics/energies/energy.hpp"

@@ -1,9 +1,10 @@
 // Stretch of one spline segment of rest length h, by its mean strain:
 //   U = 1/2 EA h (L/h - 1)^2,   L = int |p'| du   (u in [0, 1], 4-point Gauss)
 // EA: stretch stiffness (unit B/d^2 in the model).
-// The local form 1/2 EA int (|p'|/h - 1)^2 h du punishes uneven speed of the parameter inside a segment, which four control
-// points cannot avoid in a bend: at 12 segments a loop it stored 4 % of a relaxed plain cell's energy and made the
-// bend energy 3 % too high (membrane locking). One mean strain a segment leaves only the true change of length.
+// The local form 1/2 EA int (|p'|/h - 1)^2 h du punishes uneven speed of the parameter inside a segment,
+// which four control points cannot avoid in a bend: at 12 segments a loop it stored 4 % of a relaxed plain
+// cell's energy and made the bend energy 3 % too high (membrane locking). One mean strain a segment leaves
+// only the true change of length.
 #pragma once
 #include <cmath>
 
@@ -20,7 +21,7 @@ struct Stretch {
   LocalTerm<12> evaluate(const SegmentDofs& x) const {
     LocalTerm<12> term;
     double arc = 0;
-    std::array<double, 12> G{};                              // dL/dx
+    std::array<double, 12> G{};  // dL/dx
     std::array<std::array<double, 3>, 4> tangent{};
     std::array<double, 4> speed{};
     for (std::size_t g = 0; g < 4; ++g) {

@@ -1,13 +1,15 @@
 // Contact law between two points of yarn at centreline distance D: a soft shell round a hard core.
 //
-//   phi(D) = k W^2 / (p (p - 1)) [ y^(1-p) - 1 + (1 - p)(1 - y) ],   y = (D - Dc) / W,   W = Do - Dc,   D < Do
-//   phi(D) = 0                                                                                          D >= Do
+//   phi(D) = k W^2 / (p (p - 1)) [ y^(1-p) - 1 + (1 - p)(1 - y) ],   y = (D - Dc) / W,   W = Do - Dc,   D <
+//   Do phi(D) = 0                                                                                          D
+//   >= Do
 //
 // Do: outer (soft) diameter, where contact begins; Dc: core diameter, where phi diverges; p > 1: how fast.
-// Near Do it is k/2 (Do - D)^2 (continuous value and slope; integrated along two yarns the second derivative is
-// continuous too). It is a density per length of both yarns: the energy of two yarns is the double integral
-// of phi over their lengths, each pair counted once. k has the unit energy / length^4 (in the unit system of the model, B/d^5).
-// Source of the form: measured yarn compression, Singal et al., Nature Communications 15, 2622 (2024).
+// Near Do it is k/2 (Do - D)^2 (continuous value and slope; integrated along two yarns the second derivative
+// is continuous too). It is a density per length of both yarns: the energy of two yarns is the double
+// integral of phi over their lengths, each pair counted once. k has the unit energy / length^4 (in the unit
+// system of the model, B/d^5). Source of the form: measured yarn compression, Singal et al., Nature
+// Communications 15, 2622 (2024).
 #pragma once
 #include <cmath>
 #include <limits>
@@ -15,10 +17,10 @@
 namespace loopwright {
 
 struct ContactLaw {
-  double outer = 1;      // Do
-  double core = 0.5;     // Dc
+  double outer = 1;        // Do
+  double core = 0.5;       // Dc
   double stiffness = 400;  // k
-  double exponent = 2.4; // p
+  double exponent = 2.4;   // p
 
   struct Value {
     double energy = 0, slope = 0, curvature = 0;  // phi, d phi / dD, d2 phi / dD2
@@ -38,9 +40,7 @@ struct ContactLaw {
   }
 
   // The same law for yarns whose mean diameter is `scale` times the reference.
-  ContactLaw scaled(double scale) const {
-    return {outer * scale, core * scale, stiffness, exponent};
-  }
+  ContactLaw scaled(double scale) const { return {outer * scale, core * scale, stiffness, exponent}; }
 };
 
 }  // namespace loopwright

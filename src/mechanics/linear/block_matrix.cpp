@@ -60,7 +60,8 @@ void multiply(const BlockMatrix& matrix, double shift, const Unknowns& x, Unknow
     g = {};
     for (std::size_t i = begin; i < end; ++i) {
       Vec3 sum;
-      for (auto k = static_cast<std::size_t>(matrix.row_start[i]); k < static_cast<std::size_t>(matrix.row_start[i + 1]); ++k) {
+      for (auto k = static_cast<std::size_t>(matrix.row_start[i]);
+           k < static_cast<std::size_t>(matrix.row_start[i + 1]); ++k) {
         const Block& b = matrix.block[k];
         const Vec3& v = x.u[static_cast<std::size_t>(matrix.column[k])];
         sum.x += b[0] * v.x + b[1] * v.y + b[2] * v.z;

@@ -1,5 +1,5 @@
-// A symmetric sparse matrix of 3 x 3 blocks over control points, bordered by three columns for the fabric's measures
-// (width, height, skew):   [ A  C ] [ u ]
+// A symmetric sparse matrix of 3 x 3 blocks over control points, bordered by three columns for the fabric's
+// measures (width, height, skew):   [ A  C ] [ u ]
 //                          [ C' G ] [ g ]
 // A is kept whole (both triangles) by rows, so that products and assembly can run by rows.
 #pragma once
@@ -12,17 +12,17 @@
 
 namespace loopwright {
 
-using Block = std::array<double, 9>;   // row-major 3 x 3
+using Block = std::array<double, 9>;     // row-major 3 x 3
 using Measures = std::array<double, 3>;  // width, height, skew
 
 struct BlockMatrix {
-  std::vector<std::int32_t> row_start;   // [rows + 1]
-  std::vector<std::int32_t> column;      // sorted in a row
+  std::vector<std::int32_t> row_start;  // [rows + 1]
+  std::vector<std::int32_t> column;     // sorted in a row
   std::vector<Block> block;
-  std::vector<Block> border;             // [rows] C: columns width, height, skew
-  Block corner{};                        // G
-  // A second matrix on the same pattern, each entry a multiple of the 3 x 3 identity: the metric in which steps are
-  // measured (Assembly::metric); measure_metric is its diagonal for the three measures.
+  std::vector<Block> border;  // [rows] C: columns width, height, skew
+  Block corner{};             // G
+  // A second matrix on the same pattern, each entry a multiple of the 3 x 3 identity: the metric in which
+  // steps are measured (Assembly::metric); measure_metric is its diagonal for the three measures.
   std::vector<double> metric;
   Measures measure_metric{};
 

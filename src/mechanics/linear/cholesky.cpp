@@ -12,7 +12,8 @@
 #endif
 
 #ifdef LOOPWRIGHT_HAS_CHOLMOD
-// OpenBLAS, if that is the BLAS in use: its threads would fight with ours, and results must not depend on their number.
+// OpenBLAS, if that is the BLAS in use: its threads would fight with ours, and results must not depend on
+// their number.
 extern "C" void openblas_set_num_threads(int) __attribute__((weak));
 #endif
 
@@ -90,7 +91,7 @@ bool invert3(const Block& s, Block& inverse) {
 }  // namespace
 
 struct Cholesky::Factor {
-  std::vector<std::int32_t> row_start, column;   // pattern of the analysed matrix
+  std::vector<std::int32_t> row_start, column;  // pattern of the analysed matrix
   LowerColumns lower;
   int unknowns = 0;
   std::array<std::vector<double>, 3> border_solution;  // A^-1 C
@@ -132,8 +133,9 @@ struct Cholesky::Factor {
     a.sorted = a.packed = 1;
     return a;
   }
-  // Orders control points (not coordinates): three times fewer rows, nine times fewer entries to look at. Contacts come
-  // and go between neighbours, which hardly spoils an order, so it is kept until the factor has grown by a quarter.
+  // Orders control points (not coordinates): three times fewer rows, nine times fewer entries to look at.
+  // Contacts come and go between neighbours, which hardly spoils an order, so it is kept until the factor has
+  // grown by a quarter.
   void order_nodes(const BlockMatrix& m) {
     std::vector<int> start{0}, row;
     for (int i = 0; i < m.rows(); ++i) {
@@ -153,8 +155,8 @@ struct Cholesky::Factor {
     graph.dtype = CHOLMOD_DOUBLE;
     graph.sorted = graph.packed = 1;
     std::vector<int> node_order(static_cast<std::size_t>(m.rows()));
-    // METIS draws from the C library's one random generator, which it seeds anew at every call: one call at a time, or the
-    // order (and the last bits of the solution) depends on what other threads factor meanwhile.
+    // METIS draws from the C library's one random generator, which it seeds anew at every call: one call at a
+    // time, or the order (and the last bits of the solution) depends on what other threads factor meanwhile.
     static std::mutex metis;
     const auto nested_dissection = [&] {
       const std::lock_guard lock(metis);
@@ -204,7 +206,8 @@ struct Cholesky::Factor {
 #else
   Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower> factorisation;
   Eigen::Map<const Eigen::SparseMatrix<double>> view() {
-    return {unknowns, unknowns, static_cast<Eigen::Index>(lower.row.size()), lower.start.data(), lower.row.data(), lower.value.data()};
+    return {unknowns,           unknowns,         static_cast<Eigen::Index>(lower.row.size()),
+            lower.start.data(), lower.row.data(), lower.value.data()};
   }
   void analyse(const BlockMatrix&) { factorisation.analyzePattern(view()); }
   bool numeric() {
@@ -212,9 +215,12 @@ struct Cholesky::Factor {
     return factorisation.info() == Eigen::Success;
   }
   void solve(const double* b, double* x) {
-    Eigen::Map<Eigen::VectorXd>(x, unknowns) = factorisation.solve(Eigen::Map<const Eigen::VectorXd>(b, unknowns));
+    Eigen::Map<Eigen::VectorXd>(x, unknowns) =
+        factorisation.solve(Eigen::Map<const Eigen::VectorXd>(b, unknowns));
   }
-  double entries() const { return static_cast<double>(factorisation.matrixL().nestedExpression().nonZeros()); }
+  double entries() const {
+    return static_cast<double>(factorisation.matrixL().nestedExpression().nonZeros());
+  }
 #endif
 };
 
@@ -253,7 +259,8 @@ bool Cholesky::factor(const BlockMatrix& m, double shift) {
   for (std::size_t k = 0; k < 3; ++k)
     for (std::size_t l = 0; l < 3; ++l)
       for (std::size_t i = 0; i < f.border.size(); ++i)
-        for (std::size_t d = 0; d < 3; ++d) s[3 * k + l] -= f.border[i][3 * d + k] * f.border_solution[l][3 * i + d];
+        for (std::size_t d = 0; d < 3; ++d)
+          s[3 * k + l] -= f.border[i][3 * d + k] * f.border_solution[l][3 * i + d];
   return invert3(s, f.corner_inverse);
 }
 

@@ -1,4 +1,5 @@
-// Sparse Cholesky factorisation of a bordered block matrix plus a multiple of its metric D, behind a narrow interface:
+// Sparse Cholesky factorisation of a bordered block matrix plus a multiple of its metric D, behind a narrow
+// interface:
 //   [ A + shift D   C            ]
 //   [ C'            G + shift Dm ]
 // CHOLMOD (supernodal) where the build found it, otherwise Eigen's simplicial factorisation.
@@ -16,7 +17,8 @@ class Cholesky {
   Cholesky(const Cholesky&) = delete;
   Cholesky& operator=(const Cholesky&) = delete;
 
-  // False if the matrix is not positive definite. The elimination order is found anew when the pattern changes.
+  // False if the matrix is not positive definite. The elimination order is found anew when the pattern
+  // changes.
   bool factor(const BlockMatrix& matrix, double shift);
   // x = M^-1 b for the matrix of the last successful factor().
   void solve(const Unknowns& b, Unknowns& x);

@@ -2,7 +2,8 @@
 
 namespace loopwright {
 
-ConjugateGradientResult conjugate_gradient(const BlockMatrix& matrix, double shift, const Preconditioner& preconditioner, const Unknowns& b,
+ConjugateGradientResult conjugate_gradient(const BlockMatrix& matrix, double shift,
+                                           const Preconditioner& preconditioner, const Unknowns& b,
                                            double tolerance, int most, Unknowns& x) {
   ConjugateGradientResult result;
   Unknowns r = b, z, p, Ap;

@@ -15,8 +15,10 @@ struct ConjugateGradientResult {
   int iterations = 0;
 };
 
-// Stops when the residual, in the preconditioner's norm, has fallen by `tolerance`, or after `most` iterations.
-ConjugateGradientResult conjugate_gradient(const BlockMatrix& matrix, double shift, const Preconditioner& preconditioner, const Unknowns& b,
+// Stops when the residual, in the preconditioner's norm, has fallen by `tolerance`, or after `most`
+// iterations.
+ConjugateGradientResult conjugate_gradient(const BlockMatrix& matrix, double shift,
+                                           const Preconditioner& preconditioner, const Unknowns& b,
                                            double tolerance, int most, Unknowns& x);
 
 }  // namespace loopwright

@@ -11,7 +11,9 @@ namespace {
 
 // Dense Cholesky in place (lower triangle, row-major); false if not positive definite.
 bool dense_cholesky(std::vector<double>& a, int n) {
-  const auto at = [&](int i, int j) -> double& { return a[static_cast<std::size_t>(i) * static_cast<std::size_t>(n) + static_cast<std::size_t>(j)]; };
+  const auto at = [&](int i, int j) -> double& {
+    return a[static_cast<std::size_t>(i) * static_cast<std::size_t>(n) + static_cast<std::size_t>(j)];
+  };
   for (int i = 0; i < n; ++i)
     for (int j = 0; j <= i; ++j) {
       double sum = at(i, j);
@@ -27,7 +29,9 @@ bool dense_cholesky(std::vector<double>& a, int n) {
 }
 
 void dense_solve(const std::vector<double>& a, int n, std::vector<double>& x) {
-  const auto at = [&](int i, int j) { return a[static_cast<std::size_t>(i) * static_cast<std::size_t>(n) + static_cast<std::size_t>(j)]; };
+  const auto at = [&](int i, int j) {
+    return a[static_cast<std::size_t>(i) * static_cast<std::size_t>(n) + static_cast<std::size_t>(j)];
+  };
   for (int i = 0; i < n; ++i) {
     double sum = x[static_cast<std::size_t>(i)];
     for (int k = 0; k < i; ++k) sum -= at(i, k) * x[static_cast<std::size_t>(k)];
@@ -42,7 +46,8 @@ void dense_solve(const std::vector<double>& a, int n, std::vector<double>& x) {
 
 }  // namespace
 
-void Schwarz::set_patches(const std::vector<Vec3>& places, const std::vector<std::uint8_t>& held, const BlockMatrix& matrix, int patch) {
+void Schwarz::set_patches(const std::vector<Vec3>& places, const std::vector<std::uint8_t>& held,
+                          const BlockMatrix& matrix, int patch) {
   const auto n = places.size();
   double low_x = 1e300, high_x = -1e300, low_y = 1e300, high_y = -1e300;
   for (const Vec3& p : places) {
@@ -51,7 +56,8 @@ void Schwarz::set_patches(const std::vector<Vec3>& places, const std::vector<std
     low_y = std::min(low_y, p.y);
     high_y = std::max(high_y, p.y);
   }
-  const double side = std::sqrt(std::max(1e-12, (high_x - low_x) * (high_y - low_y) * patch / static_cast<double>(n)));
+  const double side =
+      std::sqrt(std::max(1e-12, (high_x - low_x) * (high_y - low_y) * patch / static_cast<double>(n)));
   const int nx = std::max(1, static_cast<int>(std::lround((high_x - low_x) / side)));
   const int ny = std::max(1, static_cast<int>(std::lround((high_y - low_y) / side)));
   const auto share = [](double v, double low, double high, int cells) {
@@ -75,7 +81,8 @@ void Schwarz::set_patches(const std::vector<Vec3>& places, const std::vector<std
   }
   coarse_unknowns_ = 3 * (nx + 1) * (ny + 1) + 3;
 
-  // Overlap: two rings of neighbours in the matrix (about half a loop along the yarn and the loops in contact).
+  // Overlap: two rings of neighbours in the matrix (about half a loop along the yarn and the loops in
+  // contact).
   patches_.clear();
   std::vector<std::uint8_t> in(n, 0);
   for (auto& nodes : own) {
@@ -136,14 +143,18 @@ bool Schwarz::factor(const BlockMatrix& matrix, double shift) {
 void Schwarz::coarse_matrix(const BlockMatrix& matrix, double shift) {
   const int n = coarse_unknowns_, measures = n - 3;
   coarse_factor_.assign(static_cast<std::size_t>(n) * static_cast<std::size_t>(n), 0);
-  const auto add = [&](int i, int j, double v) { coarse_factor_[static_cast<std::size_t>(i) * static_cast<std::size_t>(n) + static_cast<std::size_t>(j)] += v; };
+  const auto add = [&](int i, int j, double v) {
+    coarse_factor_[static_cast<std::size_t>(i) * static_cast<std::size_t>(n) + static_cast<std::size_t>(j)] +=
+        v;
+  };
   const auto rows = static_cast<std::size_t>(matrix.rows());
   for (std::size_t i = 0; i < rows; ++i)
     for (std::size_t a = 0; a < 4; ++a) {
       const double wa = coarse_weight_[4 * i + a];
       if (wa == 0) continue;
       const int ca = 3 * coarse_point_[4 * i + a];
-      for (auto e = static_cast<std::size_t>(matrix.row_start[i]); e < static_cast<std::size_t>(matrix.row_start[i + 1]); ++e) {
+      for (auto e = static_cast<std::size_t>(matrix.row_start[i]);
+           e < static_cast<std::size_t>(matrix.row_start[i + 1]); ++e) {
         const auto j = static_cast<std::size_t>(matrix.column[e]);
         for (std::size_t b = 0; b < 4; ++b) {
           const double w = wa * coarse_weight_[4 * j + b];
@@ -152,31 +163,39 @@ void Schwarz::coarse_matrix(const BlockMatrix& matrix, double shift) {
           if (cb > ca) continue;  // lower triangle
           for (int r = 0; r < 3; ++r)
             for (int c = 0; c < 3; ++c)
-              add(ca + r, cb + c, w * (matrix.block[e][static_cast<std::size_t>(3 * r + c)] + (r == c ? shift * matrix.metric[e] : 0)));
+              add(ca + r, cb + c,
+                  w * (matrix.block[e][static_cast<std::size_t>(3 * r + c)] +
+                       (r == c ? shift * matrix.metric[e] : 0)));
         }
       }
       for (int r = 0; r < 3; ++r)
-        for (int m = 0; m < 3; ++m) add(measures + m, ca + r, wa * matrix.border[i][static_cast<std::size_t>(3 * r + m)]);
+        for (int m = 0; m < 3; ++m)
+          add(measures + m, ca + r, wa * matrix.border[i][static_cast<std::size_t>(3 * r + m)]);
     }
   for (int m = 0; m < 3; ++m)
     for (int l = 0; l < 3; ++l)
       add(measures + m, measures + l,
-          matrix.corner[static_cast<std::size_t>(3 * m + l)] + (m == l ? shift * matrix.measure_metric[static_cast<std::size_t>(m)] : 0));
+          matrix.corner[static_cast<std::size_t>(3 * m + l)] +
+              (m == l ? shift * matrix.measure_metric[static_cast<std::size_t>(m)] : 0));
   // Coarse points in which no free control point takes part keep an identity row.
   for (int i = 0; i < n; ++i)
-    if (coarse_factor_[static_cast<std::size_t>(i) * static_cast<std::size_t>(n) + static_cast<std::size_t>(i)] == 0) add(i, i, 1);
+    if (coarse_factor_[static_cast<std::size_t>(i) * static_cast<std::size_t>(n) +
+                       static_cast<std::size_t>(i)] == 0)
+      add(i, i, 1);
 }
 
 void Schwarz::solve(const Unknowns& b, Unknowns& x) {
   parallel_chunks(static_cast<int>(patches_.size()), [&](int p) {
     Patch& patch = *patches_[static_cast<std::size_t>(p)];
     patch.right.u.resize(patch.nodes.size());
-    for (std::size_t k = 0; k < patch.nodes.size(); ++k) patch.right.u[k] = b.u[static_cast<std::size_t>(patch.nodes[k])];
+    for (std::size_t k = 0; k < patch.nodes.size(); ++k)
+      patch.right.u[k] = b.u[static_cast<std::size_t>(patch.nodes[k])];
     patch.factor.solve(patch.right, patch.result);
   });
   x.u.assign(b.u.size(), Vec3{});
   for (const auto& patch : patches_)
-    for (std::size_t k = 0; k < patch->nodes.size(); ++k) x.u[static_cast<std::size_t>(patch->nodes[k])] += patch->result.u[k];
+    for (std::size_t k = 0; k < patch->nodes.size(); ++k)
+      x.u[static_cast<std::size_t>(patch->nodes[k])] += patch->result.u[k];
 
   std::vector<double> c(static_cast<std::size_t>(coarse_unknowns_), 0);
   for (std::size_t i = 0; i < b.u.size(); ++i)

@@ -1,0 +1,41 @@
+// Solves (H + shift D) step = -gradient for Newton's method, by what suits the size of the fabric:
+//   few control points    a Cholesky factor at every step;
+//   middling              conjugate gradients with the factor of an earlier step as preconditioner while it
+//   is good; many, not periodic    conjugate gradients with a Schwarz preconditioner, factored anew when it
+//   has grown stale.
+// If H + shift D is not positive definite the shift is raised until it is.
+#pragma once
+#include "mechanics/linear/conjugate_gradient.hpp"
+#include "mechanics/linear/schwarz.hpp"
+#include "mechanics/yarn_model.hpp"
+
+namespace loopwright {
+
+class StepSolver {
+ public:
+  explicit StepSolver(const YarnModel& model);
+
+  struct Report {
+    bool solved = false;
+    int raised = 0;  // how often the shift had to be raised
+  };
+  // `accuracy`: relative residual of iterative solves, in the preconditioner's norm.
+  Report solve(const BlockMatrix& hessian, const YarnState& state, const Unknowns& gradient, double accuracy,
+               double& shift, Unknowns& step);
+
+  int factorisations = 0, iterations = 0;  // over all calls; a direct solve counts as one iteration
+
+ private:
+  bool solve_direct(const BlockMatrix& hessian, const Unknowns& gradient, double& shift, int& raised,
+                    Unknowns& step);
+  bool solve_patched(const BlockMatrix& hessian, const YarnState& state, const Unknowns& gradient,
+                     double accuracy, double& shift, int& raised, Unknowns& step);
+
+  const YarnModel& model_;
+  Cholesky cholesky_;
+  Schwarz schwarz_;
+  bool current_ = false;  // the factor at hand may serve as preconditioner
+  int usual_ = 40;        // iterations that a fresh Schwarz factor took last
+};
+
+}  // namespace loopwright

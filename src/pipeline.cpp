@@ -30,17 +30,17 @@ struct WantedPart {
   LoopSelection inside;  // loops that are measured; empty: all that the curves hold
 };
 
-// The window and one ring of loops round it: the ring is the frame. Yarn may slide in the ring, where it is
-// cut, so only the window's own interlacings are asked for (steps are certified for all yarn, the ring's
-// too). Wales, courses and size are the window's own: the ring only holds it.
+// The window and two rings of loops round it: the rings are the frame. Yarn may slide in the frame, where it
+// is cut, so only the window's own interlacings are asked for (steps are certified for all yarn, the frame's
+// too). Wales, courses and size are the window's own: the frame only holds it.
 WantedPart window_in_frame(const YarnGraph& graph, const GeometryOptions& options, const PlacedPiece& piece,
                            const WindowSize& window) {
-  const auto with_ring = [](int count) { return count == 0 ? 0 : count + 2; };
+  const auto with_frame = [](int count) { return count == 0 ? 0 : count + 4; };
   WantedPart part;
   part.inside = middle_window(graph, piece.layout, window.wales, window.courses);
   part.curves =
       cut_window(graph, options, piece,
-                 middle_window(graph, piece.layout, with_ring(window.wales), with_ring(window.courses)));
+                 middle_window(graph, piece.layout, with_frame(window.wales), with_frame(window.courses)));
   std::erase_if(part.curves.interlacings, [&part](const PlacedInterlacing& i) {
     return part.inside[i.parent.position()] == 0 || part.inside[i.child.position()] == 0;
   });

@@ -13,6 +13,7 @@ constexpr int samples_per_segment = 4;
 // Of a loop's length, from its top: where the neck of its head is, how far its foot reaches, how far yarn may
 // slide.
 constexpr double neck = 0.38, foot_reach = 0.56, most_slide = 0.42, climb_window = 0.1, next_foot = 0.2;
+constexpr double tuck_skirt = 0.12;  // how far below a tuck its surface reaches
 
 // One yarn as a polyline that can be asked beyond its ends where it is periodic.
 class SampledYarn {
@@ -50,6 +51,7 @@ struct LoopWindow {
   LoopId id, previous, next;  // itself and its neighbours in the yarn
   std::vector<LoopId> children;
   int order = 0;  // place in Fabric::loops
+  bool tuck = false;
 };
 
 Vec3 centroid(const LoopWindow& window) {
@@ -142,14 +144,30 @@ class Fan {
   Vec3 low_, high_, centre_;
 };
 
+// The rim of a parent's head: its arc down to the neck. A tuck's arc is wide and may be drawn nearly
+// straight, so that a chord would leave no surface: its rim goes round by way of two points below its ends,
+// where the loop drawn through it passes.
+std::vector<Vec3> rim_of(const LoopWindow& parent, int head, const Vec3& up) {
+  const double neck_share = neck / 0.5;
+  std::vector<Vec3> rim =
+      piece(*parent.yarn, head - static_cast<int>(std::lround(neck_share * parent.half_before)),
+            head + static_cast<int>(std::lround(neck_share * parent.half_after)), Vec3{});
+  if (parent.tuck && norm(up) > 0) {
+    const double spacing = distance(parent.yarn->at(head), parent.yarn->at(parent.yarn->clamp(head + 1)));
+    const Vec3 down = normalized(up) * (-tuck_skirt * parent.loop * spacing);
+    const Vec3 first = rim.front() + down, last = rim.back() + down;
+    rim.push_back(last);
+    rim.push_back(first);
+  }
+  return rim;
+}
+
 // With the parent's head at `head` and the top of the child's at `child_head`, in samples. A foot is followed
 // to the middle of its sinker and, `beyond`, into the next loop's foot: where the parent's head was moved
 // aside, the middle of the sinker lies between its legs, and only what comes after it is surely outside.
 bool is_intact(const LoopWindow& parent, int head, const LoopWindow& child, int child_head, bool beyond,
-               const Vec3& moved, int sign) {
-  const double neck_share = neck / 0.5;
-  const Fan fan(piece(*parent.yarn, head - static_cast<int>(std::lround(neck_share * parent.half_before)),
-                      head + static_cast<int>(std::lround(neck_share * parent.half_after)), Vec3{}));
+               const Vec3& moved, int sign, const Vec3& skirt_up = {}) {
+  const Fan fan(rim_of(parent, head, skirt_up));
   const int slide = child_head - child.apex;
   const double reach = foot_reach * child.loop, more = next_foot * child.loop;
   const auto related = [&](LoopId neighbour) {  // the parent itself, or drawn through it as well
@@ -235,6 +253,7 @@ InterlacingCheck check_interlacings(const Fabric& fabric) {
     window.half_after = std::min<double>(window.end - window.apex, window.loop / 2);
     window.direction = span.direction;
     window.order = static_cast<int>(k);
+    window.tuck = span.kind == LoopKind::tuck;
     window.id = span.loop;
     if (k > 0 && fabric.loops[k - 1].yarn == span.yarn) window.previous = fabric.loops[k - 1].loop;
     if (k + 1 < fabric.loops.size() && fabric.loops[k + 1].yarn == span.yarn)
@@ -259,7 +278,10 @@ InterlacingCheck check_interlacings(const Fabric& fabric) {
       intact = false;
       for (const bool beyond : {false, true})
         intact = intact || is_intact(below, below.apex, above, above.apex, beyond, moved, interlacing.sign) ||
-                 is_intact(below, head, above, child_head, beyond, moved, interlacing.sign);
+                 is_intact(below, head, above, child_head, beyond, moved, interlacing.sign) ||
+                 (below.tuck &&
+                  (is_intact(below, below.apex, above, above.apex, beyond, moved, interlacing.sign, up) ||
+                   is_intact(below, head, above, child_head, beyond, moved, interlacing.sign, up)));
     }
     if (intact)
       ++check.intact;

@@ -14,8 +14,6 @@
 namespace loopwright {
 namespace {
 
-constexpr std::array<std::array<std::size_t, 3>, 3> symmetric_at{{{0, 1, 2}, {1, 3, 4}, {2, 4, 5}}};
-
 using Fraction = std::array<double, 2>;
 
 Fraction operator+(const Fraction& a, const Fraction& b) { return {a[0] + b[0], a[1] + b[1]}; }

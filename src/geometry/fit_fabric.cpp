@@ -38,22 +38,6 @@ std::vector<Vec3> equal_samples(const Centreline& line, const std::vector<double
   return samples;
 }
 
-// Control points whose B-spline goes through the samples at whole parameters; natural ends.
-std::vector<Vec3> open_control_points(const std::vector<Vec3>& samples) {
-  const std::size_t n = samples.size();  // samples at t = 0 .. n - 1; control points n + 2
-  std::vector<double> lower(n, 1), diagonal(n, 4), upper(n, 1);
-  std::vector<Vec3> right = samples;
-  for (Vec3& each : right) each *= 6;
-  // Zero second derivative at an end means that the control point there lies on the sample.
-  diagonal[0] = diagonal[n - 1] = 6;
-  upper[0] = lower[n - 1] = 0;
-  const std::vector<Vec3> inner = solve_tridiagonal(lower, diagonal, upper, right);
-  std::vector<Vec3> control{inner[0] * 2 - inner[1]};
-  control.insert(control.end(), inner.begin(), inner.end());
-  control.push_back(inner[n - 1] * 2 - inner[n - 2]);
-  return control;
-}
-
 std::vector<Vec3> periodic_control_points(const std::vector<Vec3>& samples, const Vec3& shift) {
   // sample k = (q_k + 4 q_(k+1) + q_(k+2)) / 6, unknowns x_k = q_(k+1); q_0 = x_(n-1) - shift
   const std::size_t n = samples.size();
@@ -161,6 +145,21 @@ void add_spans(const CurveYarn& curve, const std::vector<double>& rest, const Ya
 }
 
 }  // namespace
+
+std::vector<Vec3> open_control_points(const std::vector<Vec3>& samples) {
+  const std::size_t n = samples.size();  // samples at t = 0 .. n - 1; control points n + 2
+  std::vector<double> lower(n, 1), diagonal(n, 4), upper(n, 1);
+  std::vector<Vec3> right = samples;
+  for (Vec3& each : right) each *= 6;
+  // Zero second derivative at an end means that the control point there lies on the sample.
+  diagonal[0] = diagonal[n - 1] = 6;
+  upper[0] = lower[n - 1] = 0;
+  const std::vector<Vec3> inner = solve_tridiagonal(lower, diagonal, upper, right);
+  std::vector<Vec3> control{inner[0] * 2 - inner[1]};
+  control.insert(control.end(), inner.begin(), inner.end());
+  control.push_back(inner[n - 1] * 2 - inner[n - 2]);
+  return control;
+}
 
 Fabric fit_fabric(const YarnCurves& curves, const YarnGraph& graph, const GeometryOptions& options,
                   const FitOptions& fit) {

@@ -14,4 +14,8 @@ struct FitOptions {
 Fabric fit_fabric(const YarnCurves& curves, const YarnGraph& graph, const GeometryOptions& options,
                   const FitOptions& fit = {});
 
+// Control points of the open uniform cubic B-spline through places (>= 2) at whole parameters, without
+// curvature at its ends.
+std::vector<Vec3> open_control_points(const std::vector<Vec3>& samples);
+
 }  // namespace loopwright

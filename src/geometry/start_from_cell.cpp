@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "geometry/centreline.hpp"
+#include "geometry/fit_fabric.hpp"
 #include "geometry/interlacing.hpp"
 
 namespace loopwright {
@@ -30,25 +30,6 @@ Vec3 imaged_place(const Fabric& cell, const ImagedSpan& s, double t) {
   double at = first_half ? b.begin + f * (b.apex - b.begin) : b.apex + f * (b.end - b.apex);
   if (s.reversed) at = first_half ? b.end - f * (b.end - b.apex) : b.apex - f * (b.apex - b.begin);
   return position(cell, cell.yarns[static_cast<std::size_t>(b.yarn)], at) + s.shift;
-}
-
-// Control points of the open spline through n + 1 places at whole parameters, without curvature at its ends.
-std::vector<Vec3> spline_through(const std::vector<Vec3>& places) {
-  const std::size_t n = places.size();
-  // q_(k) + 4 q_(k+1) + q_(k+2) = 6 p_k; zero curvature makes q_1 = p_0 and q_(n) = p_(n-1).
-  std::vector<double> lower(n, 1), diagonal(n, 4), upper(n, 1);
-  std::vector<Vec3> right(n);
-  for (std::size_t k = 0; k < n; ++k) right[k] = 6 * places[k];
-  for (const std::size_t end : {std::size_t{0}, n - 1}) {
-    lower[end] = upper[end] = 0;
-    diagonal[end] = 1;
-    right[end] = places[end];
-  }
-  std::vector<Vec3> inner = solve_tridiagonal(lower, diagonal, upper, right), q;
-  q.push_back(2 * inner[0] - inner[1]);
-  q.insert(q.end(), inner.begin(), inner.end());
-  q.push_back(2 * inner[n - 1] - inner[n - 2]);
-  return q;
 }
 
 // The frame is the outermost ring of loops, held whole in the shape that they have in the cell: the piece's
@@ -101,7 +82,7 @@ std::optional<Fabric> start_from_cell(const Fabric& piece, const Fabric& cell, c
       while (at + 1 < on_yarn.size() && k >= on_yarn[at + 1].span->begin) ++at;
       places.push_back(imaged_place(cell, on_yarn[at], k));
     }
-    started.yarns[y].control_points = spline_through(places);
+    started.yarns[y].control_points = open_control_points(places);
   }
   started.width = piece.wales * cell.width / cell.wales;
   started.height = piece.courses * cell.height / cell.courses;

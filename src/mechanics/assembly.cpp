@@ -56,10 +56,7 @@ int chunk_count(int nodes) { return std::clamp(nodes / 3000, 1, 16); }
 Assembly::Assembly(const YarnModel& model) : model_(model) {}
 
 double Assembly::law_scale(int a, int b) const {
-  const auto yarn = [&](int e) {
-    return static_cast<std::size_t>(model_.yarn_of_segment[static_cast<std::size_t>(e)]);
-  };
-  return 0.5 * (model_.yarns[yarn(a)].diameter + model_.yarns[yarn(b)].diameter);
+  return 0.5 * (model_.yarn_of(a).diameter + model_.yarn_of(b).diameter);
 }
 
 bool Assembly::in_contact(const SegmentPair& pair) const {
@@ -293,8 +290,7 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
       const bool whole = owns_segment(e);
       if (!whole && !gradient) continue;
       const std::size_t f = first_of(e);
-      const YarnModel::Yarn& yarn =
-          model_.yarns[static_cast<std::size_t>(model_.yarn_of_segment[static_cast<std::size_t>(e)])];
+      const YarnModel::Yarn& yarn = model_.yarn_of(e);
       SegmentDofs x;
       for (std::size_t k = 0; k < 4; ++k)
         for (std::size_t d = 0; d < 3; ++d) x[3 * k + d] = extended_[f + k][static_cast<int>(d)];
@@ -344,10 +340,8 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
       if (!whole && !gradient) continue;
       const std::size_t a0 = static_cast<std::size_t>(pair.a * model_.samples),
                         b0 = static_cast<std::size_t>(pair.b * model_.samples);
-      const YarnModel::Yarn& ya =
-          model_.yarns[static_cast<std::size_t>(model_.yarn_of_segment[static_cast<std::size_t>(pair.a)])];
-      const YarnModel::Yarn& yb =
-          model_.yarns[static_cast<std::size_t>(model_.yarn_of_segment[static_cast<std::size_t>(pair.b)])];
+      const YarnModel::Yarn& ya = model_.yarn_of(pair.a);
+      const YarnModel::Yarn& yb = model_.yarn_of(pair.b);
       ContactPairInput in{{&places_.x[a0], &places_.y[a0], &places_.z[a0]},
                           {&places_.x[b0], &places_.y[b0], &places_.z[b0]}};
       const Vec3 image = state.lattice(pair.m, pair.n);

@@ -12,7 +12,6 @@ namespace loopwright {
 struct NewtonOptions {
   double tolerance = 2e-4;
   int most_iterations = 100;
-  double stop_below = 0;  // energies below this decrease count as rest during continuation
   std::function<bool(int iteration, double residual)> on_iteration;  // false: stop
 };
 

@@ -22,10 +22,7 @@ double smallest_clearance(const YarnModel& model, const YarnState& state, double
   find_segment_pairs(model, state, places, most * largest_diameter, pairs);
   double nearest = most;
   for (const SegmentPair& pair : pairs) {
-    const auto yarn = [&](int e) -> const YarnModel::Yarn& {
-      return model.yarns[static_cast<std::size_t>(model.yarn_of_segment[static_cast<std::size_t>(e)])];
-    };
-    const double diameter = 0.5 * (yarn(pair.a).diameter + yarn(pair.b).diameter);
+    const double diameter = 0.5 * (model.yarn_of(pair.a).diameter + model.yarn_of(pair.b).diameter);
     if (!pair.same_yarn) nearest = std::min(nearest, std::sqrt(pair.distance2) / diameter);
   }
   return nearest;

@@ -97,8 +97,7 @@ SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnS
     for (std::size_t k = begin; k < end; ++k) {
       const SegmentPair& pair = pairs[k];
       const Vec3 image = state.lattice(pair.m, pair.n), moved_image = target.lattice(pair.m, pair.n) - image;
-      const YarnModel::Yarn& yarn =
-          model.yarns[static_cast<std::size_t>(model.yarn_of_segment[static_cast<std::size_t>(pair.a)])];
+      const YarnModel::Yarn& yarn = model.yarn_of(pair.a);
       const double spacing = yarn.rest_length / model.samples;
       const double missed = spacing * spacing;  // nearest samples lie up to half a spacing off on either yarn
       const auto i0 = static_cast<std::size_t>(pair.a * model.samples),

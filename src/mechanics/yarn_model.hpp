@@ -52,6 +52,10 @@ struct YarnModel {
   std::vector<std::int32_t> yarn_of_segment;      // [segment]
   std::vector<std::uint8_t> held;                 // [node]
 
+  const Yarn& yarn_of(int segment) const {
+    return yarns[static_cast<std::size_t>(yarn_of_segment[static_cast<std::size_t>(segment)])];
+  }
+
   ContactLaw contact;
   double friction = 0;
   int samples = 8;          // contact samples per segment

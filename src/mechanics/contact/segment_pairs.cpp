@@ -178,8 +178,7 @@ void find_segment_pairs(const YarnModel& model, const YarnState& state, const Sa
   const double range2 = range * range;
   for (int a = 0; a < model.segments; ++a) {
     const Box& box = all[static_cast<std::size_t>(a)].box;
-    const YarnModel::Yarn& yarn =
-        model.yarns[static_cast<std::size_t>(model.yarn_of_segment[static_cast<std::size_t>(a)])];
+    const YarnModel::Yarn& yarn = model.yarn_of(a);
     cell_of(box, at);
     for (int k = std::max(at[2] - 1, 0); k <= std::min(at[2] + 1, size[2] - 1); ++k)
       for (int j = std::max(at[1] - 1, 0); j <= std::min(at[1] + 1, size[1] - 1); ++j)

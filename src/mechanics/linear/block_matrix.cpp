@@ -22,12 +22,6 @@ std::size_t BlockMatrix::place(std::int32_t row, std::int32_t col) const {
   return static_cast<std::size_t>(at - column.begin());
 }
 
-void BlockMatrix::set_zero() {
-  std::fill(block.begin(), block.end(), Block{});
-  std::fill(border.begin(), border.end(), Block{});
-  corner = {};
-}
-
 double dot(const Unknowns& a, const Unknowns& b) {
   // Summed by fixed chunks: the same result for any number of threads.
   const int chunks = chunk_count(a.u.size());

@@ -29,7 +29,6 @@ struct BlockMatrix {
   int rows() const { return static_cast<int>(row_start.size()) - 1; }
   // Place of block (row, col); the pattern must have it.
   std::size_t place(std::int32_t row, std::int32_t col) const;
-  void set_zero();
 };
 
 // A vector of unknowns: one displacement per control point and the measures.

@@ -1,0 +1,31 @@
+// The text of a fabric file: from its parsed form, and from a Program where vermiculation can say it.
+#pragma once
+#include <string>
+
+#include "base/diagnostics.hpp"
+#include "notation/vermiculation.hpp"
+
+namespace loopwright {
+
+/// The notation as text. A line of the file that still says what the data say stands as it was written, with
+/// its blanks, groups and comments, so text -> parse_vermiculation -> write_vermiculation changes nothing but
+/// line ends. A line that was changed is written anew in the canonical way of docs/notation.md, its comment
+/// kept; a bracket whose copies no longer agree is opened. parse_vermiculation of the result gives
+/// `notation` again (same_notation).
+std::string write_vermiculation(const Vermiculation& notation);
+
+/// One course line in the canonical way.
+std::string write_course(const CourseLine& line, const std::vector<VermiculationYarn>& yarns);
+
+/// Whether two notations say the same: headers, yarns and lines, wherever they stand in their files.
+bool same_notation(const Vermiculation& a, const Vermiculation& b);
+bool same_course(const CourseLine& a, const CourseLine& b);
+
+/// The Program as a fabric file. Knitted to its size this makes the same operations on the same needles by the
+/// same yarns in the same order, counted from the left-most needle used. What vermiculation cannot say (drop,
+/// split, sliders, stitch values, carriers that leave early, ...) is left out and told as a warning in
+/// `diagnostics` with its place; without a warning nothing was lost. A Program that came from a fabric file
+/// gets its repeat, size and edges back.
+std::string write_vermiculation(const Program& program, Diagnostics& diagnostics);
+
+}  // namespace loopwright

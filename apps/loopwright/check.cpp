@@ -2,6 +2,7 @@
 #include <iostream>
 
 #include "commands.hpp"
+#include "machine_state.hpp"
 #include "outputs/write_json.hpp"
 
 namespace loopwright {
@@ -11,7 +12,7 @@ JsonObject findings(const Diagnostics& diagnostics, const Knitting& knitting) {
   JsonArray list;
   for (const Diagnostic& d : diagnostics.list()) {
     JsonObject one;
-    one.emplace_back("severity", d.severity == Severity::error ? "error" : "warning");
+    one.emplace_back("severity", std::string(to_string(d.severity)));
     if (d.at.line > 0) one.emplace_back("line", d.at.line);
     if (d.at.column > 0) one.emplace_back("column", d.at.column);
     one.emplace_back("message", d.message);
@@ -36,7 +37,7 @@ int run(const CheckCommand& command) {
   // findings are what is asked for here, so they go to standard output, unless JSON has that place
   std::ostream& out = command.json == "-" ? std::cerr : std::cout;
   bool good = true;
-  JsonArray files;
+  JsonArray files, states;
   for (const std::string& file : command.files) {
     Diagnostics diagnostics(file);
     const Knitting knitting = knit(file, {}, diagnostics);
@@ -47,8 +48,10 @@ int run(const CheckCommand& command) {
           << " yarns, " << knitting.record.passes << " passes, " << knitting.graph.interlacings.size()
           << " interlacings\n";
     if (!command.json.empty()) files.emplace_back(findings(diagnostics, knitting));
+    if (!command.machine_state.empty()) states.emplace_back(machine_state(diagnostics, knitting));
   }
   if (!command.json.empty()) write_json(command.json, {{"files", std::move(files)}});
+  if (!command.machine_state.empty()) write_json(command.machine_state, {{"files", std::move(states)}});
   return good ? exit_good : exit_error;
 }
 

@@ -3,6 +3,8 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 
 namespace loopwright {
 
@@ -11,8 +13,8 @@ bool LineReader::next(TextLine& line) {
   const std::size_t end = rest_.find('\n');
   line.text = rest_.substr(0, end);
   rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
-  line.carriage_return = !line.text.empty() && line.text.back() == '\r';
-  if (line.carriage_return) line.text.remove_suffix(1);
+  line.carriage_return = line.text.ends_with('\r');
+  while (line.text.ends_with('\r')) line.text.remove_suffix(1);
   line.number = ++number_;
   return true;
 }
@@ -25,6 +27,45 @@ bool WordReader::next(Word& word) {
   word.text = line_.substr(begin, at_ - begin);
   word.column = first_column_ + static_cast<int>(begin);
   return true;
+}
+
+std::size_t first_byte_not_utf8(std::string_view text) {
+  const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(k < text.size() ? text[k] : 0); };
+  std::size_t at = 0;
+  while (at < text.size()) {
+    // eight ASCII bytes at once: that is what nearly all programmes are made of
+    std::uint64_t eight = 0;
+    if (at + 8 <= text.size()) {
+      std::memcpy(&eight, text.data() + at, 8);
+      if ((eight & 0x8080808080808080U) == 0) {
+        at += 8;
+        continue;
+      }
+    }
+    const unsigned char first = byte(at);
+    // how many bytes follow, and the range of the second one, which shuts out overlong forms and surrogates
+    // (RFC 3629, section 4)
+    std::size_t more = 0;
+    unsigned char low = 0x80, high = 0xbf;
+    if (first >= 0xc2 && first <= 0xdf) {
+      more = 1;
+    } else if (first >= 0xe0 && first <= 0xef) {
+      more = 2;
+      if (first == 0xe0) low = 0xa0;
+      if (first == 0xed) high = 0x9f;
+    } else if (first >= 0xf0 && first <= 0xf4) {
+      more = 3;
+      if (first == 0xf0) low = 0x90;
+      if (first == 0xf4) high = 0x8f;
+    } else if (first >= 0x80) {
+      return at;
+    }
+    if (more > 0 && (byte(at + 1) < low || byte(at + 1) > high)) return at;
+    for (std::size_t k = 2; k <= more; ++k)
+      if (byte(at + k) < 0x80 || byte(at + k) > 0xbf) return at;
+    at += 1 + more;
+  }
+  return std::string_view::npos;
 }
 
 bool is_blank(char c) { return c == ' ' || c == '\t'; }
@@ -76,6 +117,11 @@ std::optional<int> parsed_integer(std::string_view text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (text.empty() || error != std::errc() || end != text.data() + text.size()) return std::nullopt;
   return value;
+}
+
+std::string written_number(double value) {
+  std::array<char, 32> digits{};
+  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
 }
 
 std::string printable(std::string_view text) {

@@ -6,7 +6,7 @@
 
 namespace loopwright {
 
-/// One line of a text without its end; `carriage_return` says that it ended with CR LF.
+/// One line of a text without its end; `carriage_return` says that it ended with CR LF, or several CR.
 struct TextLine {
   std::string_view text;
   int number = 0;  // 1-based
@@ -45,6 +45,9 @@ class WordReader {
   int first_column_ = 1;
 };
 
+/// Where a text stops being UTF-8 (RFC 3629); npos if it is UTF-8 throughout.
+std::size_t first_byte_not_utf8(std::string_view text);
+
 bool is_blank(char c);
 bool is_digit(char c);
 bool is_letter(char c);
@@ -56,6 +59,9 @@ std::string lower_case(std::string_view text);
 std::optional<double> parsed_number(std::string_view text);
 /// A whole number with an optional sign; nothing if it does not fit into an int.
 std::optional<int> parsed_integer(std::string_view text);
+
+/// The shortest digits that read back as the same number.
+std::string written_number(double value);
 
 /// Text as it may stand in a message: control and non-ASCII bytes as \xNN.
 std::string printable(std::string_view text);

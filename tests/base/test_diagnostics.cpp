@@ -45,6 +45,15 @@ TEST(Diagnostics, WarningsAreNoFailure) {
   EXPECT_FALSE(d.ok());
 }
 
+TEST(Diagnostics, AdviceIsNeitherErrorNorWarning) {
+  Diagnostics d("a.k");
+  d.advise({2, 1}, "look twice");
+  EXPECT_TRUE(d.ok());
+  EXPECT_EQ(d.warnings(), 0);
+  EXPECT_EQ(d.advice(), 1);
+  EXPECT_EQ(printed(d), "a.k:2:1: advice: look twice\n");
+}
+
 TEST(Diagnostics, AFloodIsCountedNotKept) {
   Diagnostics d("a.k");
   for (int i = 0; i < Diagnostics::most_kept + 500; ++i) d.warning({i + 1, 1}, "w");

@@ -33,6 +33,8 @@ std::set<std::string> wrong_in_form() {
   std::istringstream manifest(text_of(corpus() / "MANIFEST.tsv"));
   std::string line;
   while (std::getline(manifest, line)) {
+    // a missing Carriers header alone is a warning to readers (docs/knitout.md)
+    if (line.find("'Carriers:' header is required") != line.npos) continue;
     if (line.find("\tINVALID: syntax/header\t") != line.npos ||
         line.find("not a valid knitout magic") != line.npos) {
       names.insert(line.substr(0, line.find('\t')));
@@ -73,7 +75,7 @@ TEST_F(Corpus, IsComplete) { EXPECT_EQ(files_.size(), 114u); }
 
 TEST_F(Corpus, ReadsWithoutAnErrorUnlessTheManifestCallsItWrongInForm) {
   const std::set<std::string> wrong = wrong_in_form();
-  EXPECT_EQ(wrong.size(), 5u);
+  EXPECT_EQ(wrong.size(), 4u);
   for (const auto& file : files_) {
     Diagnostics diagnostics(file.filename());
     read_program(file, diagnostics);

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "notation/scan.hpp"
 #include "notation_test.hpp"
 
 namespace loopwright {
@@ -66,6 +67,92 @@ TEST(ReadKnitout, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(said_of(";!knitout-2\r\n;;Carriers: 1\r\nin 1\r\n"),
               HasSubstr("x.k:1:12: warning: the line ends with CR LF"));
   EXPECT_THAT(said_of(head + "purl + f1 1 ;!source: my.js 17"), HasSubstr("[source: my.js 17]"));
+}
+
+// Line ends of other systems, alone and doubled, are no part of a name; what was understood survives writing.
+TEST(ReadKnitout, LineEndsAreNoPartOfACarrier) {
+  for (const std::string text : {"in \r\r\n\r\n\ni\xff\rin\ni\n", "in A\r\r\nin \r\n",
+                                 ";;Carriers: A\r\r\nin A\r\r\n", "in \x01\n", "in A\rin B\n"}) {
+    Diagnostics diagnostics("x.k"), again("x.k");
+    const Program program = read_knitout(";!knitout-2\n" + text, diagnostics);
+    for (const std::string& name : program.carriers) EXPECT_THAT(name, testing::AnyOf("A", "B"));
+    const Program copy = read_knitout(write_knitout(program), again);
+    EXPECT_EQ(listing(copy), listing(program)) << text;
+  }
+}
+
+TEST(ReadKnitout, ControlCharactersInNamesAreErrors) {
+  Diagnostics diagnostics("x.k");
+  read_knitout(";!knitout-2\n;;Carriers: A \x02\nin A\rB\n", diagnostics);
+  EXPECT_THAT(said(diagnostics),
+              HasSubstr("x.k:2:15: error: carrier name '\\x02' holds a control character"));
+  EXPECT_THAT(said(diagnostics),
+              HasSubstr("x.k:3:4: error: carrier name 'A\\x0dB' holds a control character"));
+}
+
+TEST(ReadKnitout, WithoutACarriersHeaderEveryNameIsAllowed) {
+  Diagnostics diagnostics("x.k");
+  const Program program = read_knitout(";!knitout-2\nin 7\nknit + f1 7\nout 7\n", diagnostics);
+  EXPECT_EQ(diagnostics.errors(), 0) << said(diagnostics);
+  EXPECT_THAT(said(diagnostics), HasSubstr("x.k: warning: the Carriers header is missing"));
+  EXPECT_EQ(program.carriers, std::vector<std::string>{"7"});
+}
+
+TEST(ReadKnitout, RailsOfSeveralCarriers) {
+  Diagnostics diagnostics("x.k");
+  const Program program = read_knitout(";!knitout-2\n;;Carriers: 1 L1,L2;R1,R2 9\nin R1\n", diagnostics);
+  EXPECT_EQ(said(diagnostics), "");
+  EXPECT_THAT(program.carriers, testing::ElementsAre("1", "L1", "L2", "R1", "R2", "9"));
+}
+
+TEST(ReadKnitout, HeadersEndAtTheFirstOtherLine) {
+  Diagnostics diagnostics("x.k");
+  const Program program = read_knitout(
+      ";!knitout-2\n;;Carriers: 1\n;; a remark\n;;Carriers: 2\nin 1 ;no space before this comment\n\tknit  "
+      "+\tf1 1;\n",
+      diagnostics);
+  EXPECT_THAT(program.carriers, testing::ElementsAre("1"));
+  EXPECT_THAT(said(diagnostics),
+              HasSubstr("x.k:4:1: warning: header 'Carriers' comes after the headers have ended"));
+  EXPECT_EQ(listing(program), "in 1; knit + f1 1");
+}
+
+TEST(ReadKnitout, AnyWholeNumberIsAVersion) {
+  for (const char* version : {"0", "1", "2", "3", "99999999999999999999"}) {
+    Diagnostics diagnostics("x.k");
+    read_knitout(std::string(";!knitout-") + version + "\n;;Carriers: 1\n", diagnostics);
+    EXPECT_TRUE(diagnostics.ok()) << version;
+  }
+  for (const char* version : {"", "x", "2.0", "-1"}) {
+    Diagnostics diagnostics("x.k");
+    read_knitout(std::string(";!knitout-") + version + "\n;;Carriers: 1\n", diagnostics);
+    EXPECT_FALSE(diagnostics.ok()) << version;
+  }
+}
+
+TEST(ReadKnitout, OtherEncodingsAreTold) {
+  Diagnostics diagnostics("x.k");
+  read_knitout(";!knitout-2\n;;Carriers: 1\n; gr\xc3\xbc\xc3\x9f\nin 1 ; caf\xe9\n", diagnostics);
+  EXPECT_THAT(said(diagnostics), HasSubstr("x.k:4:11: warning: the text is not UTF-8"));
+  EXPECT_EQ(diagnostics.warnings(), 1);
+  // RFC 3629: overlong forms and surrogates are no UTF-8, the last code point is
+  EXPECT_EQ(first_byte_not_utf8("12345678\xf4\x8f\xbf\xbf"), std::string_view::npos);
+  EXPECT_EQ(first_byte_not_utf8("a\xc0\xaf"), 1u);
+  EXPECT_EQ(first_byte_not_utf8("ab\xed\xa0\x80"), 2u);
+  EXPECT_EQ(first_byte_not_utf8("\xe2\x82"), 0u);
+}
+
+// A source mark is opaque: every message about its line repeats it as it stands, whoever says it.
+TEST(ReadKnitout, SourceMarksAreRepeatedVerbatim) {
+  Diagnostics diagnostics("x.k");
+  const Program program =
+      read_knitout(";!knitout-2\n;;Carriers: 1\nin 1 ;!source: \xc3\xbc.js: 17 ; \"a\"\nin 1\n", diagnostics);
+  ASSERT_EQ(program.source_marks.size(), 1u);
+  EXPECT_EQ(program.source_marks[0].second, "\xc3\xbc.js: 17 ; \"a\"");
+  diagnostics.error(program.instructions[0].at, "first");
+  diagnostics.error(program.instructions[1].at, "second");
+  EXPECT_EQ(said(diagnostics),
+            "x.k:3:1: error: first [source: \xc3\xbc.js: 17 ; \"a\"]\nx.k:4:1: error: second\n");
 }
 
 }  // namespace

@@ -85,7 +85,7 @@ class Compiler {
       // letters that make no instruction take time all the same
       if ((letters_met_ += front_held_.size()) > 50 * options_.most_instructions) throw TooMany();
       racks_alone = racks_alone && pass.cells.empty();
-      if (pass.knits()) {
+      if (pass.carries_yarn()) {
         knit(pass);
       } else {
         transfer(pass);

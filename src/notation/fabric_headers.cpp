@@ -99,6 +99,27 @@ bool is_fabric_header(std::string_view name) {
   return name == "Name" || name == "Set" || name == "Size" || name == "Edges";
 }
 
+std::span<const std::string_view> fabric_headers() {
+  static constexpr std::array<std::string_view, 10> names{
+      "Name",        "Gauge",      "Bed-Gap", "Loop-Length", "Tuck-Length",
+      "Float-Slack", "Bed-Change", "Set",     "Size",        "Edges"};
+  return names;
+}
+
+std::string fabric_header_value(std::string_view name, const FabricSettings& settings) {
+  if (name == "Name") return settings.name;
+  if (name == "Edges") return settings.edges ? std::string(to_string(*settings.edges)) : "";
+  if (name == "Set") return settings.set != 0 ? written_number(settings.set) : "";
+  if (name == "Size" && settings.size_wales > 0 && settings.size_courses > 0)
+    return std::to_string(settings.size_wales) + " wales x " + std::to_string(settings.size_courses) +
+           " courses";
+  for (const NumberHeader& header : number_headers) {
+    if (header.name == name && settings.*header.value)
+      return written_number(*(settings.*header.value)) + (header.dimension == Dimension::length ? " mm" : "");
+  }
+  return {};
+}
+
 std::optional<Edges> parsed_edges(std::string_view text) {
   for (std::size_t i = 0; i < edge_names.size(); ++i) {
     if (edge_names[i] == text) return static_cast<Edges>(i);

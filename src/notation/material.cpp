@@ -184,6 +184,24 @@ void read_yarn(std::string_view value, SourceLocation at, YarnData& yarn, Diagno
   check_diameters(yarn, at, diagnostics);
 }
 
+std::string yarn_value(const YarnData& yarn) {
+  constexpr std::array<std::string_view, yarn_keys.size()> units{" tex", " mm",     " mm", " mN mm^2",
+                                                                 " cN",  " N/mm^3", "",    ""};
+  const Material* material = find_material(yarn.material);
+  const YarnData base = material ? material->yarn : YarnData{};
+  std::string value = base.material;
+  const auto add = [&](std::string_view key, const std::string& written) {
+    value += (value.empty() ? "" : " ") + std::string(key) + '=' + written;
+  };
+  for (std::size_t i = 0; i < yarn_keys.size(); ++i) {
+    const std::optional<double>& number = yarn.*yarn_keys[i].value;
+    if (number && number != base.*yarn_keys[i].value)
+      add(yarn_keys[i].name, written_number(*number) + std::string(units[i]));
+  }
+  if (yarn.colour != base.colour) add("colour", yarn.colour);
+  return value;
+}
+
 bool read_yarn_if_known(std::string_view value, YarnData& yarn) {
   Diagnostics diagnostics;
   YarnData read;

@@ -37,9 +37,12 @@ Material read_material(std::string_view text, Diagnostics& diagnostics);
 /// shell-exponent, friction, colour.
 void read_yarn(std::string_view value, SourceLocation at, YarnData& yarn, Diagnostics& diagnostics);
 
-/// The same where the value is free text that need not be ours (knitout): fills `yarn` only if all of it is
+/// read_yarn where the value is free text that need not be ours (knitout): fills `yarn` only if all of it is
 /// understood.
 bool read_yarn_if_known(std::string_view value, YarnData& yarn);
+
+/// The value of a yarn header: the material's name, then what differs from it. read_yarn reads the same back.
+std::string yarn_value(const YarnData& yarn);
 
 /// Whether it is a colour as we write it: `#rgb` or `#rrggbb`.
 bool is_colour(std::string_view text);

@@ -17,6 +17,9 @@ bool holds(const std::vector<Cell>& cells, bool (*wanted)(char)) {
 
 bool Pass::knits() const { return holds(cells, is_yarn_letter) || holds(rear, is_yarn_letter); }
 bool Pass::transfers() const { return holds(cells, is_transfer_letter) || holds(rear, is_transfer_letter); }
+bool Pass::carries_yarn() const {
+  return knits() || ((!yarns.empty() || direction != Direction::none) && !transfers());
+}
 bool CourseLine::knits() const {
   return std::any_of(passes.begin(), passes.end(), [](const Pass& pass) { return pass.knits(); });
 }
@@ -175,8 +178,11 @@ class CourseParser {
         }
       }
     }
-    if (!pass.knits() && (!pass.yarns.empty() || pass.direction != Direction::none)) {
-      error(begin, "a pass without stitches or tucks carries no yarn; remove what stands before the letters");
+    if (!pass.yarns.empty() || pass.direction != Direction::none) {
+      if (pass.transfers())
+        error(begin, "a pass of transfers carries no yarn; remove what stands before the letters");
+      if (pass.cells.empty())
+        error(begin, "a pass that carries yarn names its needles; write '.' for those that it goes past");
     }
     if (!pass.both_beds) return;
     check_row(pass.cells, "gvt.-", "left of '/' stand the front needles: g v t . -");

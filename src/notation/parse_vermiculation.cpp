@@ -13,8 +13,9 @@ namespace loopwright {
 namespace {
 
 constexpr std::string_view magic = ";!vermiculation-";
-constexpr std::size_t most_letters = 5'000'000;  // of the whole notation, repeats written out
-constexpr std::size_t most_lines = 100'000;      // the same in lines
+constexpr std::size_t most_letters = 5'000'000;        // of the whole notation, repeats written out
+constexpr std::size_t most_lines = 100'000;            // the same in lines
+constexpr std::size_t most_written_lines = 1'000'000;  // kept as they stand; beyond, layout is not kept
 constexpr std::size_t most_yarns = 26;
 constexpr std::size_t deepest_bracket = 32;
 
@@ -34,10 +35,10 @@ class VermiculationParser {
         said_carriage_return_ = true;
         diagnostics_.warning(here(text_.size()), "the line ends with CR LF; convert the line ends to LF");
       }
-      if (line_ == 1 && read_magic()) continue;
-      if (text_.starts_with(";;") && read_header()) continue;
-      text_ = text_.substr(0, text_.find(';'));
-      if (!trimmed(text_).empty()) read_course_or_bracket();
+      written_ = {};
+      read_line();
+      written_.text = written_.kind == WrittenLine::Kind::magic ? text_ : line.text;
+      if (result_.written.size() < most_written_lines) result_.written.push_back(std::move(written_));
     }
     if (line_ == 0)
       diagnostics_.error({}, "the file is empty; a fabric file starts with ';!vermiculation-1'");
@@ -45,6 +46,7 @@ class VermiculationParser {
       diagnostics_.error(open_brackets_.back().at,
                          "this '[' is never closed; add a line ']*2' where the repeat ends");
     }
+    if (result_.written.size() == most_written_lines) result_.written.clear();
     end_headers();
     return std::move(result_);
   }
@@ -52,6 +54,18 @@ class VermiculationParser {
  private:
   SourceLocation here(std::size_t index) const { return {line_, static_cast<int>(index) + 1}; }
   void error(std::size_t index, std::string message) { diagnostics_.error(here(index), std::move(message)); }
+
+  void read_line() {
+    if (line_ == 1 && read_magic()) {
+      written_.kind = WrittenLine::Kind::magic;
+    } else if (text_.starts_with(";;") && read_header()) {
+      // after the first course it has no effect: a comment
+      if (!headers_ended_) written_.kind = WrittenLine::Kind::header;
+    } else {
+      text_ = text_.substr(0, text_.find(';'));
+      if (!trimmed(text_).empty()) read_course_or_bracket();
+    }
+  }
 
   // Whether the first line was the magic line; anything else is read as what it is, after saying so.
   bool read_magic() {
@@ -184,6 +198,7 @@ class VermiculationParser {
         error(begin + 1, "'[' stands on a line of its own; put the course on the next");
       if (open_brackets_.size() == deepest_bracket) return error(begin, "brackets are nested too deep");
       open_brackets_.push_back({here(begin), result_.lines.size(), letters_});
+      written_.kind = WrittenLine::Kind::open;
     } else if (text_[begin] == ']') {
       close_bracket(begin);
     } else {
@@ -208,6 +223,8 @@ class VermiculationParser {
       return error(index,
                    "the notation becomes too long when this is written out; let ;;Size repeat it instead");
     }
+    written_.kind = WrittenLine::Kind::close;
+    written_.times = times;
     letters_ += (times - 1) * letters;
     result_.lines.reserve(result_.lines.size() + (times - 1) * lines);
     for (std::size_t i = 0; i < (times - 1) * lines; ++i) {
@@ -226,6 +243,7 @@ class VermiculationParser {
       return;
     }
     result_.lines.push_back(std::move(line));
+    written_.kind = WrittenLine::Kind::course;
   }
 
   struct Bracket {
@@ -238,6 +256,7 @@ class VermiculationParser {
   Vermiculation result_;
   int line_ = 0;
   std::string_view text_;  // the line being read, without its comment
+  WrittenLine written_;    // the same line, as it stands
   bool headers_ended_ = false, said_carriage_return_ = false, full_ = false;
   SourceLocation carriers_at_;
   std::vector<Bracket> open_brackets_;

@@ -38,6 +38,8 @@ struct Pass {
   SourceLocation at;
   bool knits() const;      // holds a yarn letter
   bool transfers() const;  // holds T or t
+  bool carries_yarn()
+      const;  // knits, or has its feeder or direction named: the carrier goes past its needles
 };
 
 /// A line: passes that `&` joins. It counts as a course if one of them knits.
@@ -54,6 +56,14 @@ struct VermiculationYarn {
 
 enum class Gating : std::uint8_t { opposite, half_pitch };
 
+/// A line of the file as it stands, for write_vermiculation.
+struct WrittenLine {
+  enum class Kind : std::uint8_t { magic, text, header, open, close, course };
+  Kind kind = Kind::text;  // text: blank or a comment; open, close: `[` and `]*n`
+  std::string text;        // with its comment, without its line end
+  std::size_t times = 1;   // close: n
+};
+
 struct Vermiculation {
   std::string file;
   int version = 1;
@@ -62,7 +72,8 @@ struct Vermiculation {
   std::vector<std::string> carriers;  // machine carriers of the yarns; empty: named as the yarns
   std::optional<Gating> gating;       // none: half pitch if facing needles knit in the same pass
   std::vector<std::pair<std::string, std::string>> headers;
-  std::vector<CourseLine> lines;  // with `[ ... ]*n` written out
+  std::vector<CourseLine> lines;     // with `[ ... ]*n` written out
+  std::vector<WrittenLine> written;  // the file, a line each; its courses, written out, are those of `lines`
 };
 
 /// What the caller may want otherwise than the file says, and how much is too much.

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 
 #include "notation/fabric_headers.hpp"
+#include "notation/material.hpp"
+#include "notation/scan.hpp"
 
 namespace loopwright {
 namespace {
@@ -13,12 +14,7 @@ constexpr std::array<std::string_view, 16> names{"in",   "inhook", "releasehook"
                                                  "rack", "pause",  "extension",   "knit", "tuck",    "split",
                                                  "miss", "drop",   "amiss",       "xfer"};
 
-// The shortest digits that read back as the same number.
-void append_number(std::string& text, double value) {
-  std::array<char, 32> digits{};
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
-  text.append(digits.data(), end);
-}
+void append_number(std::string& text, double value) { text += written_number(value); }
 
 void append_header(std::string& text, std::string_view name, std::string_view value) {
   text += ";;";
@@ -29,25 +25,13 @@ void append_header(std::string& text, std::string_view name, std::string_view va
   text += '\n';
 }
 
-void append_quantity(std::string& text, std::string_view name, const std::optional<double>& value,
-                     std::string_view unit) {
-  if (!value) return;
-  std::string written;
-  append_number(written, *value);
-  append_header(text, name, written + std::string(unit));
-}
-
 void append_settings(std::string& text, const FabricSettings& settings) {
-  if (!settings.name.empty()) append_header(text, "X-Name", settings.name);
-  append_quantity(text, "X-Bed-Gap", settings.bed_gap_mm, " mm");
-  append_quantity(text, "X-Loop-Length", settings.loop_length_mm, " mm");
-  append_quantity(text, "X-Tuck-Length", settings.tuck_length_mm, " mm");
-  append_quantity(text, "X-Float-Slack", settings.float_slack, "");
-  append_quantity(text, "X-Bed-Change", settings.bed_change_mm, " mm");
-  if (settings.set > 0) append_quantity(text, "X-Set", settings.set, "");
-  // held and periodic edges belong to a window, which knitout cannot tell
-  if (settings.edges == Edges::free || settings.edges == Edges::bound_off) {
-    append_header(text, "X-Edges", to_string(*settings.edges));
+  for (const std::string_view name : fabric_headers()) {
+    const std::string value = fabric_header_value(name, settings);
+    // the size is in the needles; held and periodic edges belong to a window, which knitout cannot tell
+    const bool told = name != "Size" && (name != "Edges" || settings.edges == Edges::free ||
+                                         settings.edges == Edges::bound_off);
+    if (told && !value.empty()) append_header(text, (name == "Gauge" ? "" : "X-") + std::string(name), value);
   }
 }
 
@@ -67,23 +51,7 @@ std::string yarn_as_it_stood(const Program& program, const std::string& carrier)
 
 void append_yarns(std::string& text, const Program& program) {
   for (std::size_t i = 0; i < program.yarns.size() && i < program.carriers.size(); ++i) {
-    const YarnData& yarn = program.yarns[i];
-    std::string value = yarn.material;
-    const auto add = [&](std::string_view key, const std::optional<double>& number, std::string_view unit) {
-      if (!number) return;
-      value += (value.empty() ? "" : " ") + std::string(key) + '=';
-      append_number(value, *number);
-      value += unit;
-    };
-    add("linear-density", yarn.linear_density_tex, " tex");
-    add("diameter", yarn.diameter_mm, " mm");
-    add("core-diameter", yarn.core_diameter_mm, " mm");
-    add("bend-stiffness", yarn.bend_stiffness_mN_mm2, " mN mm^2");
-    add("stretch-stiffness", yarn.stretch_stiffness_cN, " cN");
-    add("shell-stiffness", yarn.shell_stiffness, " N/mm^3");
-    add("shell-exponent", yarn.shell_exponent, "");
-    add("friction", yarn.friction_coefficient, "");
-    if (!yarn.colour.empty()) value += (value.empty() ? "colour=" : " colour=") + yarn.colour;
+    std::string value = yarn_value(program.yarns[i]);
     if (value.empty()) value = yarn_as_it_stood(program, program.carriers[i]);
     if (!value.empty()) append_header(text, "Yarn-" + program.carriers[i], value);
   }
@@ -132,7 +100,6 @@ std::string write_knitout(const Program& program) {
   std::string carriers;
   for (const std::string& carrier : program.carriers) carriers += (carriers.empty() ? "" : " ") + carrier;
   append_header(text, "Carriers", carriers);
-  append_quantity(text, "Gauge", program.settings.gauge_npi, "");
   append_settings(text, program.settings);
   append_yarns(text, program);
   for (const auto& [name, value] : program.headers) {

@@ -130,7 +130,7 @@ TEST(Vermiculation, ErrorsOfTheGrammar) {
   EXPECT_THAT(errors_of("B: g\n"), HasSubstr("2:1: error: no yarn is called 'B'"));
   EXPECT_THAT(errors_of("A+A: g\n"), HasSubstr("2:3: error: yarn 'A' is named twice"));
   EXPECT_THAT(errors_of("A+: g\n"), HasSubstr("2:3: error: expected the name of a yarn"));
-  EXPECT_THAT(errors_of("A: t\n"), HasSubstr("2:1: error: a pass without stitches or tucks carries no yarn"));
+  EXPECT_THAT(errors_of("A: t\n"), HasSubstr("2:1: error: a pass of transfers carries no yarn"));
   EXPECT_THAT(errors_of("[\ng\n"), HasSubstr("2:1: error: this '[' is never closed"));
   EXPECT_THAT(errors_of("g\n]*2\n"), HasSubstr("3:1: error: this ']' has no '['"));
   EXPECT_THAT(errors_of("[\ng\n] 2\n"), HasSubstr("4:3: error: expected how many times"));

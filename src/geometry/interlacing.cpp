@@ -12,7 +12,7 @@ namespace {
 constexpr int samples_per_segment = 4;
 // Of a loop's length, from its top: where the neck of its head is, how far its foot reaches, how far yarn may
 // slide.
-constexpr double neck = 0.38, foot_reach = 0.56, most_slide = 0.42, climb_window = 0.1, next_foot = 0.2;
+constexpr double neck = 0.38, foot_reach = 0.56, most_slide = 0.42, climb_window = 0.1, next_foot = 0.5;
 constexpr double tuck_skirt = 0.12;  // how far below a tuck its surface reaches
 
 // One yarn as a polyline that can be asked beyond its ends where it is periodic.

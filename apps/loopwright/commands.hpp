@@ -15,7 +15,7 @@ inline constexpr int exit_good = 0, exit_error = 1, exit_interrupted = 130;
 // Files named in a request: empty means not wanted; for JSON "-" is standard output.
 struct CheckCommand {
   std::vector<std::string> files;
-  std::string json;
+  std::string json, machine_state;
 };
 int run(const CheckCommand& command);
 

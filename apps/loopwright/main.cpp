@@ -50,6 +50,10 @@ void add_commands(CLI::App& app, Commands& commands, Action& action) {
       ->add_option("--json", commands.check.json,
                    "Write the findings as JSON to a file, - for standard output")
       ->type_name("FILE");
+  check
+      ->add_option("--machine-state", commands.check.machine_state,
+                   "Write where every loop and carrier went, as JSON to a file")
+      ->type_name("FILE");
   check->callback([&] { action = [&] { return run(commands.check); }; });
 
   CLI::App* build = app.add_subcommand("build", "Write the first geometry, before mechanics");

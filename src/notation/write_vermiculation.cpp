@@ -139,6 +139,16 @@ class Writer {
     text_ += '\n';
   }
 
+  // A blank or commented line. A header that came too late to count does not come in time because the courses
+  // before it are gone: it stays a comment.
+  void put_text(const std::string& line) {
+    std::size_t end = 2;
+    while (end < line.size() && (is_letter(line[end]) || is_digit(line[end]) || line[end] == '-')) ++end;
+    const bool late_header =
+        !begun_ && line.starts_with(";;") && end > 2 && end < line.size() && line[end] == ':';
+    put(late_header ? "; " + line : line);
+  }
+
   // Where each bracket closes, and where the headers end.
   void find_blocks() {
     const std::vector<WrittenLine>& written = notation_.written;
@@ -183,7 +193,7 @@ class Writer {
       if (std::find(said.begin(), said.end(), name) == said.end() && must_be_said(name))
         put_header(name, value_of(name), "");
     }
-    for (std::size_t i = end; i < first_course_; ++i) put(written[i].text);
+    for (std::size_t i = end; i < first_course_; ++i) put_text(written[i].text);
   }
 
   void write_header_line(std::size_t index, std::vector<std::string>& said) {
@@ -193,7 +203,7 @@ class Writer {
       return put(version == notation_.version ? line.text
                                               : ";!vermiculation-" + std::to_string(notation_.version));
     }
-    if (line.kind == Kind::text) return put(line.text);
+    if (line.kind == Kind::text) return put_text(line.text);
     const std::string name = name_of_header(line.text);
     // of a header that is given twice the last one counts
     if (last_of_name_.at(name) != index) return put(line.text);
@@ -325,8 +335,7 @@ class Writer {
         at = write_block(i, at, comments);
         i = close_[i];
       } else if (comments) {
-        // a header that came too late to count does not come in time because its bracket was opened
-        put((!begun_ && written.text.starts_with(";;") ? "; " : "") + written.text);
+        put_text(written.text);
       }
     }
     return at;

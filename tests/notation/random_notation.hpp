@@ -26,7 +26,7 @@ class RandomNotation {
     text_ = ";!vermiculation-1\n";
     const auto add = [&](int percent, const std::string& line) {
       if (chance(percent)) text_ += line + comment() + "\n";
-      if (chance(10)) text_ += one_of("", "; a word", "   ", ";; no header") + "\n";
+      if (chance(10)) text_ += one_of("", "; a word", "   ", ";; no: header") + "\n";
     };
     add(50, ";;Name: " + one_of("rib", "a 'b' c"));
     add(50, ";;Gauge: " + one_of("12", "7 npi", "E14"));

@@ -62,6 +62,7 @@ void Carriers::take_out(const Instruction& instruction, int index, std::vector<Y
     } else {
       yarns[carrier.yarn.position()].out_instruction = index;
       active_.erase(std::find(active_.begin(), active_.end(), id));
+      last_places_[id.position()] = {carrier.at, carrier.side, false};
     }
     carrier = Carrier();
   }
@@ -87,7 +88,9 @@ void Carriers::release_hook(const Instruction& instruction) {
 }
 
 const std::vector<CarrierId>& Carriers::use(const Instruction& instruction, std::vector<YarnRecord>& yarns) {
-  for (CarrierId id : known(instruction)) {
+  known(instruction);
+  require_whole_set(instruction);
+  for (CarrierId id : set_) {
     Carrier& carrier = carriers_[id.position()];
     if (carrier.in_hook) hook_.used = true;
     if (carrier.state == Carrier::State::active) continue;
@@ -110,23 +113,47 @@ void Carriers::follow(Needle from, Needle to, const std::vector<CarrierId>& but)
   }
 }
 
-void Carriers::warn_of_carriers_left_in() const {
+void Carriers::require_whole_set(const Instruction& instruction) {
+  for (CarrierId id : set_) {
+    const Carrier& carrier = carriers_[id.position()];
+    if (carrier.state != Carrier::State::pending) continue;
+    std::vector<CarrierId> named =
+        program_.instructions[static_cast<std::size_t>(carrier.in_instruction)].carriers;
+    std::vector<CarrierId> used = set_;
+    std::sort(named.begin(), named.end());
+    named.erase(std::unique(named.begin(), named.end()), named.end());
+    std::sort(used.begin(), used.end());
+    if (named == used) continue;
+    diagnostics_.error(instruction.at, "the first use of carrier " + name(id) + " names " + names(set_) +
+                                           ", but " + line_of(carrier.in_instruction) + " brings in " +
+                                           names(named) + ": use just these, or bring in just " +
+                                           names(set_));
+    return;
+  }
+}
+
+void Carriers::finish() const {
   for (std::size_t k = 0; k < carriers_.size(); ++k) {
     const Carrier& carrier = carriers_[k];
     if (carrier.state == Carrier::State::pending) {
-      diagnostics_.warning(at(carrier.in_instruction),
-                           "carrier " + name(CarrierId(k)) + " is brought in and never used");
+      diagnostics_.error(at(carrier.in_instruction),
+                         "carrier " + name(CarrierId(k)) + " is brought in and never used: leave this out");
     } else if (carrier.state == Carrier::State::active) {
-      diagnostics_.warning(at(carrier.in_instruction),
-                           "carrier " + name(CarrierId(k)) + " is still in at the end: end with 'out " +
-                               name(CarrierId(k)) + "' or 'outhook " + name(CarrierId(k)) + "'");
+      const std::string hooked = carrier.in_hook ? "'releasehook' and " : "";
+      diagnostics_.error(at(carrier.in_instruction),
+                         "carrier " + name(CarrierId(k)) + " is still in at the end: end with " + hooked +
+                             "'out " + name(CarrierId(k)) + "' or 'outhook " + name(CarrierId(k)) + "'");
     }
   }
-  if (!hook_.holds.empty()) {
-    diagnostics_.warning(at(hook_.instruction), "the yarn inserting hook still holds " + names(hook_.holds) +
-                                                    " at the end: write 'releasehook " + names(hook_.holds) +
-                                                    "' once the yarn is knitted in");
+}
+
+std::vector<CarrierPlace> Carriers::places() const {
+  std::vector<CarrierPlace> places = last_places_;
+  for (CarrierId id : active_) {
+    const Carrier& carrier = carriers_[id.position()];
+    places[id.position()] = {carrier.at, carrier.side, true};
   }
+  return places;
 }
 
 const std::vector<CarrierId>& Carriers::known(const Instruction& instruction) {
@@ -155,7 +182,8 @@ void Carriers::empty_hook() {
 
 std::string Carriers::names(const std::vector<CarrierId>& set) const {
   std::string text;
-  for (CarrierId id : set) text += (text.empty() ? "" : " ") + name(id);
+  for (CarrierId id : set)
+    if (id.valid() && id.position() < program_.carriers.size()) text += (text.empty() ? "" : " ") + name(id);
   return text;
 }
 

@@ -20,12 +20,16 @@ struct Carrier {
   std::optional<Needle> at;          // it stands beside this needle ...
   Direction side = Direction::none;  // ... on this side of it
   bool in_hook = false;
+  bool missed = false;  // has gone past needles since its last loop: its yarn lies across them
 };
 
 class Carriers {
  public:
   Carriers(const Program& program, Diagnostics& diagnostics)
-      : program_(program), diagnostics_(diagnostics), carriers_(program.carriers.size()) {}
+      : program_(program),
+        diagnostics_(diagnostics),
+        carriers_(program.carriers.size()),
+        last_places_(program.carriers.size()) {}
 
   void bring_in(const Instruction& instruction, int index);
   void take_out(const Instruction& instruction, int index, std::vector<YarnRecord>& yarns);
@@ -35,7 +39,14 @@ class Carriers {
   const std::vector<CarrierId>& use(const Instruction& instruction, std::vector<YarnRecord>& yarns);
   // Motion rule: carriers beside a needle whose loops move go with them, except those of `but`.
   void follow(Needle from, Needle to, const std::vector<CarrierId>& but);
-  void warn_of_carriers_left_in() const;
+  // What must be out at the end and is not.
+  void finish() const;
+  // Carriers that have been used and not taken out, in the order in which they came in.
+  const std::vector<CarrierId>& active() const { return active_; }
+  // Where every carrier is, or was when it was taken out.
+  std::vector<CarrierPlace> places() const;
+  // What the hook holds; empty while it is free.
+  const std::vector<CarrierId>& hook() const { return hook_.holds; }
 
   Carrier& operator[](CarrierId id) { return carriers_[id.position()]; }
 
@@ -48,6 +59,8 @@ class Carriers {
 
   const std::vector<CarrierId>& known(
       const Instruction& instruction);  // told and left out: unknown or double names
+  // A set that comes in comes in whole: its first use names just the carriers that `in` or `inhook` named.
+  void require_whole_set(const Instruction& instruction);
   bool hook_holds_exactly(std::vector<CarrierId> set) const;
   void empty_hook();
   std::string name(CarrierId id) const { return program_.carriers[id.position()]; }
@@ -58,8 +71,9 @@ class Carriers {
   const Program& program_;
   Diagnostics& diagnostics_;
   std::vector<Carrier> carriers_;
-  std::vector<CarrierId> active_;  // in the order in which they became active
-  std::vector<CarrierId> set_;     // answer of known()
+  std::vector<CarrierPlace> last_places_;  // of carriers that were taken out
+  std::vector<CarrierId> active_;          // in the order in which they became active
+  std::vector<CarrierId> set_;             // answer of known()
   Hook hook_;
 };
 

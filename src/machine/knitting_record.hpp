@@ -1,5 +1,6 @@
 // KnittingRecord: what every needle and carrier of the V-bed did, as found by running a Program.
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,7 +30,11 @@ struct LoopRecord {
   LoopKind kind = LoopKind::knit;
   Direction direction = Direction::right;  // of the carrier when it was formed
   int instruction = -1;
-  int pass = -1;                      // carriage pass that formed it
+  int pass = -1;  // carriage pass that formed it
+  // A tuck made against the way that its yarn was travelling: its two legs cross. (Whoever draws a stitch
+  // through held loops pulls its yarn straight, so only tucks stay so.)
+  bool twisted = false;
+  bool on_empty_needle = false;       // nothing was on its needle: a cast-on, knitted or tucked
   double racking = 0;                 // when it was formed
   std::vector<Placement> placements;  // where it was formed, then every needle it was moved to
   std::vector<LoopId> parents;  // loops that it was drawn through, in stack order (oldest in the hook first)
@@ -68,6 +73,31 @@ struct LoopCrossing {
   int instruction = -1;
 };
 
+// Where a carrier was at the end, or when it was last taken out; after transfers took it along.
+struct CarrierPlace {
+  std::optional<Needle> needle;  // none: never used
+  Direction side = Direction::none;
+  bool in = false;  // still in at the end
+};
+
+// The carriage passes a carrier that is in the way to the other side of its needle, before an instruction
+// acts: `side` of the needle that its yarn comes from, or of the first needle of its own pass.
+struct KickBack {
+  int instruction = -1;  // before this one
+  CarrierId carrier;
+  Needle needle;
+  Direction side = Direction::none;
+};
+
+// Acts that are possible but seldom meant, counted as they happen; `review` makes sentences of them.
+struct Acts {
+  int count = 0;
+  int first = -1;     // instruction of the first one
+  Needle needle;      // of the first one
+  int highest = 0;    // stacks: most loops
+  CarrierId carrier;  // caught yarn: whose
+};
+
 // The loops that a needle holds at some time, in stack order, first in the hook first.
 struct NeedleStack {
   Needle needle;
@@ -90,7 +120,11 @@ struct KnittingRecord {
   // from the front of the fabric (+z) to its back, 0 in front; `stack_height` is the number of loops that lay
   // there.
   std::vector<int> stack_rank, stack_height;
-  int passes = 0;
+  int passes = 0;                      // runs of yarn in one direction: LoopRecord::pass counts these
+  int carriage_passes = 0;             // traverses of the carriage, transfers and kick-backs included
+  std::vector<CarrierPlace> carriers;  // by CarrierId
+  std::vector<KickBack> kick_backs;    // in time order
+  Acts drops_of_empty, transfers_of_empty, tall_stacks, caught_yarns, hook_blocked, hook_to_right;
 };
 
 }  // namespace loopwright

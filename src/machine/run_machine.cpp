@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "machine/carriage.hpp"
 #include "machine/carriers.hpp"
 #include "machine/crossings.hpp"
 #include "machine/needle_table.hpp"
@@ -21,6 +22,7 @@ class Machine {
         needles_(program),
         stacks_(static_cast<std::size_t>(needles_.size())),
         carriers_(program, diagnostics),
+        carriage_(program),
         crossings_(needles_, stacks_) {}
 
   KnittingRecord run();
@@ -43,8 +45,11 @@ class Machine {
                  int fate_instruction);  // records how the loops lay; does not remove them
   void count_pass(const Instruction& instruction, const std::vector<CarrierId>& set);
   void lay_yarn(const Instruction& instruction, CarrierId id, LoopId formed);
-  void warn_of_long_float(const Instruction& instruction, YarnId yarn);
-  void warn_of_many_loops(const Instruction& instruction, Needle needle, std::size_t before);
+  bool is_twisted(const Instruction& instruction, CarrierId id);
+  void count(Acts& acts, Needle needle) const;
+  void count_tall_stack(Needle needle, std::size_t before);
+  void count_caught_yarns(const Instruction& instruction, const std::vector<CarrierId>& set);
+  void watch_hook(const Instruction& instruction, const std::vector<CarrierId>& set);
 
   const Program& program_;
   Diagnostics& diagnostics_;
@@ -52,10 +57,13 @@ class Machine {
   std::vector<std::vector<LoopId>> stacks_;  // by needle position
   Racking racking_;
   Carriers carriers_;
+  Carriage carriage_;
   CrossingTracker crossings_;
   KnittingRecord record_;
-  std::vector<LoopId> last_loop_;  // by yarn
-  int now_ = 0;                    // index of the instruction that runs
+  std::vector<LoopId> last_loop_;    // by yarn
+  int now_ = 0;                      // index of the instruction that runs
+  std::optional<double> hook_slot_;  // of the first needle of what the hook holds, once there is one
+  std::string stitch_setting_;       // the last x- operation: settings such as x-stitch-number end a pass
 
   // The carriage pass that is under way.
   std::vector<CarrierId> pass_set_;
@@ -77,10 +85,13 @@ KnittingRecord Machine::run() {
         break;
       case Op::releasehook:
         carriers_.release_hook(instruction);
+        carriage_.end_pass();
+        hook_slot_.reset();
         break;
       case Op::out:
       case Op::outhook:
         carriers_.take_out(instruction, now_, record_.yarns);
+        carriage_.end_pass();
         break;
       case Op::rack:
         rack(instruction);
@@ -90,7 +101,7 @@ KnittingRecord Machine::run() {
         has_yarn ? form_loops(instruction) : drop(instruction);
         break;
       case Op::tuck:
-        if (has_yarn) form_loops(instruction);
+        has_yarn ? form_loops(instruction) : carriage_.act(instruction, now_, {}, racking_, carriers_);
         break;
       case Op::split:
         has_yarn ? form_loops(instruction) : transfer(instruction);
@@ -105,9 +116,15 @@ KnittingRecord Machine::run() {
         transfer(instruction);
         break;
       case Op::amiss:
+        carriage_.act(instruction, now_, {}, racking_, carriers_);
+        break;
       case Op::stitch:
       case Op::pause:
+        carriage_.end_pass();
+        break;
       case Op::extension:
+        if (instruction.text != stitch_setting_) carriage_.end_pass();
+        stitch_setting_ = instruction.text;
         break;
     }
     ++now_;
@@ -123,7 +140,10 @@ KnittingRecord Machine::run() {
     end_stack(needles_.needle(position), LoopFate::held, -1);
   }
   record_.crossings = crossings_.net_crossings(now_ - 1);
-  carriers_.warn_of_carriers_left_in();
+  carriers_.finish();
+  record_.carriers = carriers_.places();
+  record_.carriage_passes = carriage_.passes();
+  record_.kick_backs = std::move(carriage_.kick_backs());
   return std::move(record_);
 }
 
@@ -149,7 +169,10 @@ void Machine::form_loops(const Instruction& instruction) {
   }
   const std::vector<CarrierId>& set = carriers_.use(instruction, record_.yarns);
   if (set.empty()) return;
+  carriage_.act(instruction, now_, set, racking_, carriers_);
   count_pass(instruction, set);
+  watch_hook(instruction, set);
+  count_caught_yarns(instruction, set);
   last_loop_.resize(record_.yarns.size());
 
   // The loops that the new ones are drawn through leave the needle: cast off, or to the opposite needle.
@@ -180,6 +203,8 @@ void Machine::form_loops(const Instruction& instruction) {
     loop_record.instruction = now_;
     loop_record.pass = record_.passes - 1;
     loop_record.racking = racking_.value();
+    loop_record.on_empty_needle = before == 0;
+    loop_record.twisted = kind == LoopKind::tuck && is_twisted(instruction, id);
     loop_record.placements.push_back({now_, needle, racking_.slot(needle)});
     loop_record.parents = parents;
     record_.loops.push_back(std::move(loop_record));
@@ -187,7 +212,7 @@ void Machine::form_loops(const Instruction& instruction) {
     crossings_.arrive(formed);
     lay_yarn(instruction, id, formed);
   }
-  if (!draws) warn_of_many_loops(instruction, needle, before);
+  if (!draws) count_tall_stack(needle, before);
 }
 
 void Machine::miss(const Instruction& instruction) {
@@ -199,19 +224,25 @@ void Machine::miss(const Instruction& instruction) {
   }
   const std::vector<CarrierId>& set = carriers_.use(instruction, record_.yarns);
   if (set.empty()) return;
+  carriage_.act(instruction, now_, set, racking_, carriers_);
   count_pass(instruction, set);
+  watch_hook(instruction, set);
   last_loop_.resize(record_.yarns.size());
   for (CarrierId id : set) lay_yarn(instruction, id, LoopId());
 }
 
 void Machine::transfer(const Instruction& instruction) {
   if (!can_transfer(instruction)) return;
+  carriage_.act(instruction, now_, {}, racking_, carriers_);
+  if (stack(instruction.needle).empty()) count(record_.transfers_of_empty, instruction.needle);
   move_stack(instruction.needle, instruction.target);
   carriers_.follow(instruction.needle, instruction.target, {});
 }
 
 void Machine::drop(const Instruction& instruction) {
+  carriage_.act(instruction, now_, {}, racking_, carriers_);
   std::vector<LoopId>& hook = stack(instruction.needle);
+  if (hook.empty()) count(record_.drops_of_empty, instruction.needle);
   end_stack(instruction.needle, LoopFate::dropped, now_);
   for (LoopId id : hook) crossings_.leave(id, instruction.needle, now_);
   hook.clear();
@@ -252,7 +283,7 @@ void Machine::move_stack(Needle from, Needle to) {
     crossings_.arrive(id);
   }
   source.clear();
-  warn_of_many_loops(program_.instructions[static_cast<std::size_t>(now_)], to, before);
+  count_tall_stack(to, before);
 }
 
 void Machine::end_stack(Needle needle, LoopFate fate, int fate_instruction) {
@@ -295,33 +326,68 @@ void Machine::lay_yarn(const Instruction& instruction, CarrierId id, LoopId form
   step.direction = direction_of(instruction);
   step.instruction = now_;
   step.from = carrier.at.value_or(instruction.needle);
-  if (formed.valid()) {
-    warn_of_long_float(instruction, carrier.yarn);
-    last_loop_[carrier.yarn.position()] = formed;
-  }
+  if (formed.valid()) last_loop_[carrier.yarn.position()] = formed;
+  carrier.missed = !formed.valid();
   yarn.steps.push_back(step);
   carrier.at = instruction.needle;
   carrier.side = step.direction;
 }
 
-void Machine::warn_of_long_float(const Instruction& instruction, YarnId yarn) {
-  const LoopId last = last_loop_[yarn.position()];
-  if (!last.valid()) return;
-  const Needle from = loop(last).last().needle;
-  const double length = std::abs(racking_.slot(instruction.needle) - racking_.slot(from));
-  if (length <= longest_float) return;
-  const int line = program_.instructions[static_cast<std::size_t>(loop(last).instruction)].at.line;
-  diagnostics_.warning(instruction.at, "the yarn floats over " + std::to_string(static_cast<int>(length)) +
-                                           " needles, from " + to_string(from) + " (line " +
-                                           std::to_string(line) + ") to " + to_string(instruction.needle) +
-                                           ": tuck it on the way if it must not hang loose");
+// The yarn comes from beside the needle where the carrier stands; it is laid the wrong way round if the
+// carrier must first go past the needle to come back over it.
+bool Machine::is_twisted(const Instruction& instruction, CarrierId id) {
+  const Carrier& carrier = carriers_[id];
+  if (!carrier.at) return false;
+  const long long from = 2 * racking_.order(*carrier.at) + static_cast<int>(carrier.side);
+  const long long to = 2 * racking_.order(instruction.needle);
+  return direction_of(instruction) == Direction::right ? from > to : from < to;
 }
 
-void Machine::warn_of_many_loops(const Instruction& instruction, Needle needle, std::size_t before) {
+void Machine::count(Acts& acts, Needle needle) const {
+  if (acts.count++ > 0) return;
+  acts.first = now_;
+  acts.needle = needle;
+}
+
+void Machine::count_tall_stack(Needle needle, std::size_t before) {
   const std::size_t loops = stack(needle).size();
-  if (loops <= most_loops_on_needle || before > most_loops_on_needle) return;
-  diagnostics_.warning(instruction.at, "needle " + to_string(needle) + " now holds " + std::to_string(loops) +
-                                           " loops, more than a hook takes: knit them off earlier");
+  if (loops <= most_loops_on_needle) return;
+  if (before <= most_loops_on_needle) count(record_.tall_stacks, needle);
+  record_.tall_stacks.highest = std::max(record_.tall_stacks.highest, static_cast<int>(loops));
+}
+
+// A carrier that went past needles without a loop leaves its yarn across them: a loop made there catches it.
+void Machine::count_caught_yarns(const Instruction& instruction, const std::vector<CarrierId>& set) {
+  for (CarrierId id : carriers_.active()) {
+    const Carrier& carrier = carriers_[id];
+    if (!carrier.missed || std::find(set.begin(), set.end(), id) != set.end()) continue;
+    const LoopId last = last_loop_[carrier.yarn.position()];
+    if (!last.valid()) continue;
+    const long long here = 2 * racking_.order(instruction.needle);
+    const long long begin = 2 * racking_.order(loop(last).last().needle);
+    const long long end = 2 * racking_.order(*carrier.at) + static_cast<int>(carrier.side);
+    if (std::min(begin, end) >= here || here >= std::max(begin, end)) continue;
+    if (record_.caught_yarns.count == 0) record_.caught_yarns.carrier = id;
+    count(record_.caught_yarns, instruction.needle);
+  }
+}
+
+// The hook is parked to the right of the first needle of what it holds, and hides the needles there.
+void Machine::watch_hook(const Instruction& instruction, const std::vector<CarrierId>& set) {
+  const std::vector<CarrierId>& holds = carriers_.hook();
+  if (holds.empty()) {
+    hook_slot_.reset();
+    return;
+  }
+  const double slot = racking_.slot(instruction.needle);
+  const bool holds_this = std::find(set.begin(), set.end(), holds.front()) != set.end();
+  if (!hook_slot_) {
+    if (!holds_this) return;  // it comes with its first use
+    hook_slot_ = slot;
+    if (direction_of(instruction) == Direction::right) count(record_.hook_to_right, instruction.needle);
+  } else if (slot > *hook_slot_ && slot <= *hook_slot_ + needles_behind_hook) {
+    count(record_.hook_blocked, instruction.needle);
+  }
 }
 
 }  // namespace

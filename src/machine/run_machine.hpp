@@ -6,9 +6,10 @@
 
 namespace loopwright {
 
-// What is possible but seldom meant is a warning beyond these.
-inline constexpr int longest_float = 20;        // needles between two loops that the same yarn forms in turn
-inline constexpr int most_loops_on_needle = 9;  // spacer fabrics reach nine
+// From here on a stack is told by review(). Machines take more, spacer fabrics reach 9.
+inline constexpr int most_loops_on_needle = 4;
+// To the right of where the yarn inserting hook is parked.
+inline constexpr int needles_behind_hook = 5;
 
 // Time and memory linear in the number of instructions (a programme that racks by many needles with loops on
 // both beds also pays for the needles that it carries past each other).

@@ -344,6 +344,7 @@ class Compiler {
     add_rack(racking, racking_at_.line > 0 ? racking_at_ : pass.at);
     if (direction == Direction::left) std::reverse(actions_.begin(), actions_.end());
     const int yarns = static_cast<int>(carriers.size());
+    join(direction, actions_.front());
     for (const Action& action : actions_) {
       const char letter = action.cell->letter;
       const Op op = letter == '.' ? Op::miss : letter == 'v' || letter == 'n' ? Op::tuck : Op::knit;
@@ -366,7 +367,19 @@ class Compiler {
       if (last_direction_[id.position()] == Direction::none) arriving.push_back(id);
     }
     if (!arriving.empty()) add(Op::in, pass.at).carriers = arriving;
+    if (arriving.size() < carriers.size()) joining_ = arriving;
     return carriers;
+  }
+
+  // What comes in must first be used alone (knitout): a yarn that joins one that is in already first goes to
+  // where the pass starts.
+  void join(Direction direction, const Action& first) {
+    if (joining_.empty()) return;
+    Instruction& instruction = add(Op::miss, first.cell->at);
+    instruction.direction = direction == Direction::right ? Direction::left : Direction::right;
+    instruction.needle = first.needle;
+    instruction.carriers = std::move(joining_);
+    joining_.clear();
   }
 
   // All loops to the front bed, then from the carrier's side on: each loop goes onto its neighbour's needle
@@ -428,6 +441,7 @@ class Compiler {
   double machine_racking_ = 0;             // of the last rack instruction
   std::vector<Direction> last_direction_;  // by yarn; none: the carrier is not in
   std::vector<CarrierId> last_carriers_;
+  std::vector<CarrierId> joining_;  // brought in, to be plated with a yarn that is in already
   SourceLocation last_at_;
   std::vector<Action> actions_;                         // of the run being knitted
   std::map<std::pair<int, int>, bool> transfer_cells_;  // by line and column: whether it ever moved a loop

@@ -168,7 +168,7 @@ TEST(RunMachine, split_keeps_the_old_loops_on_the_opposite_needle) {
 }
 
 TEST(RunMachine, plating_forms_one_loop_a_yarn_through_all_old_ones) {
-  const MachineRun run = machine_of("in A\nin B\nknit + f1 B A\nknit - f1 A B\nout A\nout B\n");
+  const MachineRun run = machine_of("in B A\nknit + f1 B A\nknit - f1 A B\nout A\nout B\n");
   ASSERT_TRUE(run.diagnostics.ok()) << run.diagnostics;
   const std::vector<LoopRecord>& loops = run.record.loops;
   ASSERT_EQ(loops.size(), 4u);

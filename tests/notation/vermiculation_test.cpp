@@ -62,7 +62,7 @@ TEST(Vermiculation, RackingIsAbsoluteAndRkIsKnitoutsPlusK) {
 
 TEST(Vermiculation, FeedersDirectionsAndPlating) {
   EXPECT_EQ(listing(free_piece("A> g.\nB+A< .g\n", "2 x 2", ";;Yarn-A:\n;;Yarn-B:\n;;Carriers: 3 5\n")),
-            "in 3; knit + f0 3; miss + f1 3; in 5; knit - f1 5 3; miss - f0 5 3; out 3; out 5");
+            "in 3; knit + f0 3; miss + f1 3; in 5; miss + f1 5; knit - f1 5 3; miss - f0 5 3; out 3; out 5");
 }
 
 TEST(Vermiculation, HeldEdgesHaveAMarginOfWholeRepeats) {
@@ -299,6 +299,17 @@ TEST(Vermiculation, TooLargeAPieceIsAnError) {
   Diagnostics idle("idle.verm");
   read_vermiculation(";!vermiculation-1\n;;Size: 1000 x 1000\ng-*99\n[\n-*99 t\n]*10000\n", idle, options);
   EXPECT_THAT(said(idle), HasSubstr("or as many idle letters"));
+}
+
+// knitout wants a set that comes in used whole and alone first.
+TEST(Vermiculation, AYarnThatJoinsAnotherGoesToWhereThePassStarts) {
+  Diagnostics diagnostics("x.verm");
+  const Program program = read_vermiculation(
+      ";!vermiculation-1\n;;Yarn-A: wool 2/28 Nm\n;;Yarn-B: wool 2/28 Nm\n;;Edges: free\nA: gg\nA+B: gg\n",
+      diagnostics);
+  EXPECT_EQ(said(diagnostics), "");
+  EXPECT_EQ(listing(program),
+            "in A; knit + f0 A; knit + f1 A; in B; miss + f1 B; knit - f1 A B; knit - f0 A B; out A; out B");
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ TEST(BindingPoints, in_plain_fabric_every_inner_point_is_one_p_and_one_o) {
 }
 
 TEST(BindingPoints, stacks_bring_several_p_plating_several_o_to_a_point) {
-  const GraphRun run = graph_of("in A B\nknit + f1 A\ntuck - f1 B\nknit + f1 A B\nout A B\n");
+  const GraphRun run = graph_of("in A\nin B\nknit + f1 A\ntuck - f1 B\nknit + f1 A B\nout A B\n");
   const BindingPoints points = binding_points(run.graph);
   const BindingPoint& site = points.points[static_cast<std::size_t>(points.lower[2])];
   EXPECT_THAT(numbers(site.upper_of), ElementsAre(0, 1));

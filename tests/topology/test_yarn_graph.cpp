@@ -129,10 +129,10 @@ struct Damage {
 class Validation : public testing::TestWithParam<Damage> {};
 
 TEST_P(Validation, finds_the_fault) {
-  YarnGraph graph =
-      graph_of(
-          "in A B\nknit + f1 A\nknit + f2 A\ntuck - f2 A\nknit - f1 A\nknit + f1 B\nknit + f2 B\nout A B\n")
-          .graph;
+  YarnGraph graph = graph_of(
+                        "in A\nin B\nknit + f1 A\nknit + f2 A\ntuck - f2 A\nknit - f1 A\nknit + f1 B\nknit + "
+                        "f2 B\nout A B\n")
+                        .graph;
   GetParam().damage(graph);
   const std::vector<std::string> faults = validate_yarn_graph(graph);
   EXPECT_THAT(faults, testing::Contains(testing::HasSubstr(GetParam().words)));

@@ -16,8 +16,17 @@ inline constexpr int exit_good = 0, exit_error = 1, exit_interrupted = 130;
 struct CheckCommand {
   std::vector<std::string> files;
   std::string json, machine_state;
+  std::string machine;  // whose rules to ask as well: "shima", "kniterate" or nobody's
 };
 int run(const CheckCommand& command);
+
+struct DiagramCommand {
+  std::string file, out;
+  std::string size;           // wales x courses; empty: one repeat
+  bool whole = false;         // as large as the file says
+  int first = 1, most = 200;  // of a knitout file's passes
+};
+int run(const DiagramCommand& command);
 
 struct BuildCommand {
   std::string file, out, json;

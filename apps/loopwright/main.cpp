@@ -14,6 +14,7 @@ using namespace loopwright;
 
 struct Commands {
   CheckCommand check;
+  DiagramCommand diagram;
   BuildCommand build;
   RelaxCommand relax;
   RenderCommand render;
@@ -54,7 +55,25 @@ void add_commands(CLI::App& app, Commands& commands, Action& action) {
       ->add_option("--machine-state", commands.check.machine_state,
                    "Write where every loop and carrier went, as JSON to a file")
       ->type_name("FILE");
+  check->add_option("--machine", commands.check.machine, "Ask the rules of a make of machine as well")
+      ->check(CLI::IsMember({"shima", "kniterate"}));
   check->callback([&] { action = [&] { return run(commands.check); }; });
+
+  CLI::App* diagram = app.add_subcommand("diagram", "Draw the needle diagram on point paper");
+  diagram->add_option("FILE", commands.diagram.file, "Fabric or knitout file")->required();
+  diagram->add_option("-o,--out", commands.diagram.out, "The drawing, - for standard output")
+      ->type_name("SVG")
+      ->required();
+  diagram->add_option("--size", commands.diagram.size, "Wales and courses to draw; default: one repeat")
+      ->type_name("WxC");
+  diagram->add_flag("--whole", commands.diagram.whole, "As large as the file's Size says");
+  diagram->add_option("--first", commands.diagram.first, "First pass of a knitout file to draw")
+      ->check(CLI::Range(1, 100'000'000))
+      ->capture_default_str();
+  diagram->add_option("--passes", commands.diagram.most, "How many passes of a knitout file to draw")
+      ->check(CLI::Range(1, 10'000))
+      ->capture_default_str();
+  diagram->callback([&] { action = [&] { return run(commands.diagram); }; });
 
   CLI::App* build = app.add_subcommand("build", "Write the first geometry, before mechanics");
   build->add_option("FILE", commands.build.file, "Knitout or fabric file")->required();

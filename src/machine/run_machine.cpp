@@ -366,6 +366,7 @@ void Machine::count_caught_yarns(const Instruction& instruction, const std::vect
     const long long here = 2 * racking_.order(instruction.needle);
     const long long begin = 2 * racking_.order(loop(last).last().needle);
     const long long end = 2 * racking_.order(*carrier.at) + static_cast<int>(carrier.side);
+    if (std::abs(end - begin) <= 4 * most_needles_passed) continue;
     if (std::min(begin, end) >= here || here >= std::max(begin, end)) continue;
     if (record_.caught_yarns.count == 0) record_.caught_yarns.carrier = id;
     count(record_.caught_yarns, instruction.needle);

@@ -28,6 +28,13 @@ struct DiagramCommand {
 };
 int run(const DiagramCommand& command);
 
+struct ConvertCommand {
+  std::string file, out;
+  std::string machine;    // "shima" or "kniterate"; empty: shima for fabric files, any for knitout
+  bool bind_off = false;  // instead of dropping the last loops
+};
+int run(const ConvertCommand& command);
+
 struct BuildCommand {
   std::string file, out, json;
   PieceRequest piece;

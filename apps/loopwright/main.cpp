@@ -15,6 +15,7 @@ using namespace loopwright;
 struct Commands {
   CheckCommand check;
   DiagramCommand diagram;
+  ConvertCommand convert;
   BuildCommand build;
   RelaxCommand relax;
   RenderCommand render;
@@ -74,6 +75,17 @@ void add_commands(CLI::App& app, Commands& commands, Action& action) {
       ->check(CLI::Range(1, 10'000))
       ->capture_default_str();
   diagram->callback([&] { action = [&] { return run(commands.diagram); }; });
+
+  CLI::App* convert = app.add_subcommand(
+      "convert", "Write a fabric file as knitout for a machine, or knitout as a fabric file");
+  convert->add_option("FILE", commands.convert.file, "Fabric or knitout file")->required();
+  convert->add_option("-o,--out", commands.convert.out, "What to write: .k, .knitout or .verm")
+      ->type_name("OUT")
+      ->required();
+  convert->add_option("--machine", commands.convert.machine, "The make of machine (default: shima)")
+      ->check(CLI::IsMember({"shima", "kniterate"}));
+  convert->add_flag("--bind-off", commands.convert.bind_off, "Bind off instead of dropping the last loops");
+  convert->callback([&] { action = [&] { return run(commands.convert); }; });
 
   CLI::App* build = app.add_subcommand("build", "Write the first geometry, before mechanics");
   build->add_option("FILE", commands.build.file, "Knitout or fabric file")->required();

@@ -7,7 +7,8 @@ prints a JSON list with one object per file:
 
     file            the path as given
     accepted        true when there is no error
-    errors          [[line, message], ...] in file order; line 0 stands for the end of the file
+    errors          [[line, message], ...] in the order found; a carrier that is left in is told at the line that
+                    brought it in
     warnings        the same shape; they never make a file rejected
     loops_at_end    {needle: [[carrier, line of the operation that made the loop], ...]} in stack order
     stack_heights   {needle: loops on it at the end}; empty needles are left out
@@ -63,10 +64,10 @@ import re
 import sys
 from functools import lru_cache
 
-MAGIC = re.compile(r"^;!knitout-(\d+)$")
+MAGIC = re.compile(r"^;!knitout-([0-9]+)$")
 HEADER = re.compile(r"^;;([^:]*): (.*)$")
 NEEDLE = re.compile(r"^([fb]s?)(-?[0-9]+)$")
-NUMBER = re.compile(r"^[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?$")
+NUMBER = re.compile(r"^[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?$")
 KNOWN_HEADERS = {"Carriers", "Machine", "Gauge", "Position", "Width", "Presser"}
 NEWEST_VERSION = 2
 
@@ -89,6 +90,7 @@ class Machine:
         self.uses = []
         self.waiting = {}  # carrier -> the set it was brought in with
         self.active = set()
+        self.brought_at = {}  # carrier -> line of the `in` or `inhook`, or of a first use without one
         self.positions = {}  # carrier -> (needle, side), kept after `out`
         self.last_used_at = {}  # the same, as it was just after its last use
         self.hook = None  # the set that the yarn inserting hook holds
@@ -153,6 +155,7 @@ class Machine:
                     self.hook_used = True
             elif carrier not in self.active:
                 self.error(f"carrier {carrier} is not in")
+                self.brought_at[carrier] = self.line
         self.beside = [place(self.positions[c])[:-1] if c in self.active else "in" for c in carriers]
         for carrier in carriers:
             self.waiting.pop(carrier, None)
@@ -265,6 +268,7 @@ class Machine:
                 self.error(f"carrier {carrier} is in already")
             else:
                 self.waiting[carrier] = list(carriers)
+                self.brought_at[carrier] = self.line
 
     def take_out(self, words, with_hook):
         carriers = self.carriers(words)
@@ -360,8 +364,8 @@ class Machine:
                 self.operation(words)
             except Refused as refusal:
                 self.error(str(refusal))
-        self.line = 0
         for carrier in sorted(self.active | set(self.waiting)):
+            self.line = self.brought_at[carrier]
             self.error(f"carrier {carrier} is still in at the end")
 
     def report(self, path, history):

@@ -55,12 +55,35 @@ struct RelaxCommand {
 };
 int run(const RelaxCommand& command);
 
+// What moves the loop-scale model (docs/loop_scale.md).
+struct LoopRequest {
+  std::string law = "along";
+  bool coupling = false, gravity = false;
+  double shear = 0, fold = 0.25, bend = 0, damping = 1;
+  std::vector<std::string> clamps, pulls;  // places; PLACE:cN
+  double take_down_cN = 0, ramp_s = 0;
+};
+
 struct RenderCommand {
   std::string file, out;
   PieceRequest piece;
   PictureRequest picture;
+  std::string style = "yarn";     // yarn, structure, sides
+  std::string moment = "stable";  // of the loop model: start, stable, both
+  LoopRequest loop;
 };
 int run(const RenderCommand& command);
+
+struct AnimateCommand {
+  std::string file, out;
+  std::string model = "loop", style = "structure";
+  LoopRequest loop;
+  PictureRequest picture;
+  int frames = 48, threads = 0;
+  std::optional<double> seconds;
+  bool no_pictures = false;
+};
+int run(const AnimateCommand& command);
 
 struct MeasureCommand {
   std::string file, json;

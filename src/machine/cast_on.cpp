@@ -44,9 +44,13 @@ CastOn cast_on_of(const Program& fabric, const KnittingRecord& record) {
   for (const LoopRecord& loop : record.loops)
     if (loop.instruction < repeat_end)
       (is_front(loop.formed().needle.bed) ? front_passes : rear_passes).insert(loop.pass);
-  cast_on.beds_apart = !front_passes.empty() && !rear_passes.empty() &&
-                       std::none_of(front_passes.begin(), front_passes.end(),
-                                    [&](int pass) { return rear_passes.count(pass) > 0; });
+  const bool pass_on_both = std::any_of(front_passes.begin(), front_passes.end(),
+                                        [&](int pass) { return rear_passes.count(pass) > 0; });
+  const auto on_front = [](const Needle& needle) { return is_front(needle.bed); };
+  const auto on_rear = [](const Needle& needle) { return !is_front(needle.bed); };
+  cast_on.beds_apart = !pass_on_both &&
+                       std::any_of(cast_on.needles.begin(), cast_on.needles.end(), on_front) &&
+                       std::any_of(cast_on.needles.begin(), cast_on.needles.end(), on_rear);
   return cast_on;
 }
 

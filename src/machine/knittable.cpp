@@ -98,11 +98,15 @@ std::vector<CarrierId> KnittableBuilder::renamed(const std::vector<CarrierId>& c
 }
 
 Direction KnittableBuilder::first_direction(CarrierId id) const {
-  for (const Instruction& instruction : fabric_.instructions)
-    if (names_needle(instruction) && instruction.op != Op::miss &&
-        std::find(instruction.carriers.begin(), instruction.carriers.end(), id) != instruction.carriers.end())
-      return instruction.direction;
-  return Direction::none;
+  Direction missing = Direction::none;  // of a yarn that only goes past needles
+  for (const Instruction& instruction : fabric_.instructions) {
+    if (!names_needle(instruction) ||
+        std::find(instruction.carriers.begin(), instruction.carriers.end(), id) == instruction.carriers.end())
+      continue;
+    if (instruction.op != Op::miss) return instruction.direction;
+    if (missing == Direction::none) missing = instruction.direction;
+  }
+  return missing;
 }
 
 // All machines put the all-needle position between the same needles; each has its own fraction for it.

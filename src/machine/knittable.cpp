@@ -37,6 +37,7 @@ class KnittableBuilder {
   void bring_in(CarrierId id);
   void release(CarrierId id);
   void tuck_in(CarrierId id);
+  std::vector<Needle> tuck_needles(bool front, bool out, Direction first) const;
   void pattern();
   void end();
   void take_out_and_drop();
@@ -169,7 +170,10 @@ void KnittableBuilder::cast_on() {
     add_pass(needles_of_one_pass(passes.front(), direction), Op::knit, leading);
   }
   for (std::size_t k = 0; k < fabric_.carriers.size(); ++k) tuck_in(CarrierId(k));
-  add_rack(0);
+  // The pattern counts on beds at home, unless it racks before anything else.
+  const auto starts = std::find_if(fabric_.instructions.begin(), fabric_.instructions.end(),
+                                   [](const Instruction& each) { return each.op != Op::in; });
+  if (starts == fabric_.instructions.end() || starts->op != Op::rack) add_rack(0);
 }
 
 // As many of the needles as one pass can knit: of a tube those of one bed, of needles that face each other
@@ -199,25 +203,33 @@ void KnittableBuilder::tuck_in(CarrierId id) {
   if (wanted == Direction::none || is_in) return;
   const Direction first = limits_.has_hook ? Direction::left : Direction::right;
   bring_in(id);
-  Direction direction = first;
-  int shift = 0;
+  CastOnPass pass{{}, first};
   while (true) {
     // in a tube the front goes to the right and the rear to the left
-    bool front = cast_on_.beds_apart ? direction == Direction::right : is_front(cast_on_.needles.front().bed);
-    std::vector<Needle> bed;
-    for (const Needle& needle : cast_on_.needles)
-      if (is_front(needle.bed) == front) bed.push_back(needle);
-    if (first == Direction::left) std::reverse(bed.begin(), bed.end());
-    CastOnPass pass{{}, direction};
-    for (std::size_t k = static_cast<std::size_t>(shift) % bed.size(); k < bed.size(); k += tuck_in_distance)
-      pass.needles.push_back(bed[k]);
-    if (first == Direction::left) std::reverse(pass.needles.begin(), pass.needles.end());
+    const bool front =
+        cast_on_.beds_apart ? pass.direction == Direction::right : is_front(cast_on_.needles.front().bed);
+    pass.needles = tuck_needles(front, pass.direction == first, first);
     add_pass(pass, Op::tuck, id);
-    if (direction == first) release(id);
-    if (direction != wanted) return;
-    direction = direction == Direction::right ? Direction::left : Direction::right;
-    shift = tuck_in_distance / 2;
+    if (pass.direction == first) release(id);
+    if (pass.direction != wanted) return;
+    pass.direction = pass.direction == Direction::right ? Direction::left : Direction::right;
   }
+}
+
+// Every fourth needle of a bed from where the first pass starts; on the way back those half-way between, none
+// beyond the turn.
+std::vector<Needle> KnittableBuilder::tuck_needles(bool front, bool out, Direction first) const {
+  std::vector<Needle> bed;
+  for (const Needle& needle : cast_on_.needles)
+    if (is_front(needle.bed) == front) bed.push_back(needle);
+  if (first == Direction::left) std::reverse(bed.begin(), bed.end());
+  const std::size_t turn = (bed.size() - 1) / tuck_in_distance * tuck_in_distance;
+  std::vector<Needle> needles;
+  for (std::size_t k = out ? 0 : tuck_in_distance / 2; k <= turn; k += tuck_in_distance)
+    needles.push_back(bed[k]);
+  if (needles.empty()) needles.push_back(bed[turn]);
+  if (first == Direction::left) std::reverse(needles.begin(), needles.end());
+  return needles;
 }
 
 // The fabric's instructions as they stand, each with its place in the fabric file.

@@ -47,6 +47,8 @@ class Decompiler {
     name_yarns(passes);
     find_gating(passes);
     last_direction_.assign(program_.carriers.size(), Direction::none);
+    starts_left_.assign(program_.carriers.size(), false);
+    seen_in_repeat_ = starts_left_;
     tell_machine_state();
     for (std::size_t i = 0; i < passes.size(); ++i) {
       const ProgramPass& pass = passes[i];
@@ -173,7 +175,7 @@ class Decompiler {
     const Instruction& first = program_.instructions[source.begin];
     Pass pass;
     pass.at = first.at;
-    name_feeder(first, pass);
+    name_feeder(first, pass, wanted);
     std::vector<Meeting> met;
     bool one_each = true;  // one needle for each wale says it, without transfers that are not there
     for (std::size_t i = source.begin; i < source.end; ++i) {
@@ -209,12 +211,18 @@ class Decompiler {
     return false;
   }
 
-  void name_feeder(const Instruction& first, Pass& pass) {
+  // A repeat's first pass by a yarn says its direction if that is not what an empty machine starts with: the
+  // repeat is the first one as well.
+  void name_feeder(const Instruction& first, Pass& pass, bool wanted) {
+    const std::size_t leading = first.carriers.front().position();
     for (const CarrierId id : first.carriers) pass.yarns.push_back(yarn_of_[id.position()]);
     if (pass.yarns == std::vector<int>{0}) pass.yarns.clear();
-    const Direction last = last_direction_[first.carriers.front().position()];
+    const Direction last = last_direction_[leading];
     const Direction expected = last == Direction::right ? Direction::left : Direction::right;
-    if (first.direction != expected) pass.direction = first.direction;
+    if (last == Direction::none) starts_left_[leading] = first.direction == Direction::left;
+    const bool is_first = extent_.repeat && wanted && !seen_in_repeat_[leading];
+    if (wanted) seen_in_repeat_[leading] = true;
+    if (first.direction != expected || (is_first && starts_left_[leading])) pass.direction = first.direction;
     for (const CarrierId id : first.carriers) last_direction_[id.position()] = first.direction;
   }
 
@@ -389,7 +397,8 @@ class Decompiler {
   std::vector<int> yarn_of_;  // by carrier
   double gating_ = 0, line_racking_ = 0;
   std::vector<Direction> last_direction_;  // by carrier
-  std::map<Needle, int> held_;             // loops on each needle
+  std::vector<bool> starts_left_, seen_in_repeat_;
+  std::map<Needle, int> held_;  // loops on each needle
   SourceLocation last_at_;
   int last_column_ = 0;
 };
@@ -408,6 +417,23 @@ struct Act {
            a.racking == b.racking && a.carriers == b.carriers;
   }
 };
+
+// Transfers that follow one another at one racking and share no needle may come in any order.
+void sort_transfers(std::vector<Act>& acts) {
+  for (std::size_t i = 0; i < acts.size();) {
+    std::set<Needle> used;
+    std::size_t end = i;
+    while (end < acts.size() && acts[end].op == Op::xfer && acts[end].racking == acts[i].racking &&
+           !used.contains(acts[end].needle) && !used.contains(acts[end].target)) {
+      used.insert(acts[end].needle);
+      used.insert(acts[end].target);
+      ++end;
+    }
+    std::sort(acts.begin() + static_cast<std::ptrdiff_t>(i), acts.begin() + static_cast<std::ptrdiff_t>(end),
+              [](const Act& a, const Act& b) { return a.needle < b.needle; });
+    i = std::max(end, i + 1);
+  }
+}
 
 std::vector<Act> acts_of(const Program& program, int first) {
   std::vector<Act> acts;
@@ -428,6 +454,7 @@ std::vector<Act> acts_of(const Program& program, int first) {
     const std::size_t loops = carries_yarn(each) ? each.carriers.size() : 0;
     held[each.needle] = each.op == Op::tuck ? held[each.needle] + loops : loops;
   }
+  sort_transfers(acts);
   return acts;
 }
 

@@ -17,7 +17,9 @@ when all but the corpus was compared and the corpus is not there.
 """
 
 import argparse
+import concurrent.futures
 import csv
+import functools
 import gc
 import json
 import os
@@ -37,7 +39,7 @@ SKIPPED = 77
 
 def said_by_command(command, files, scratch):
     """The command's machine states of the files, in their order."""
-    state = scratch / "state.json"
+    state = scratch / f"state_{os.getpid()}.json"
     state.unlink(missing_ok=True)
     ran = subprocess.run(
         [command, "check", *map(str, files), "--machine-state", str(state)],
@@ -90,6 +92,18 @@ def differences(command, checker):
     return found
 
 
+def compared(command, files, scratch):
+    """For each file the checker's report, without its longest lists, and what the command says differently."""
+    gc.disable()  # nothing here is cyclic, and looking for cycles took half of the time
+    results = []
+    for path, said in zip(files, said_by_command(command, files, scratch), strict=True):
+        report = knitout_check.check(path, history=True)
+        found = differences(said, report)
+        del report["loops"], report["uses"]
+        results.append((report, found))
+    return results
+
+
 class Comparison:
     def __init__(self, command, scratch):
         self.command, self.scratch = command, scratch
@@ -99,25 +113,18 @@ class Comparison:
         self.failed = True
         print(text)
 
-    def compare(self, kind, files, names=None):
+    def compare(self, kind, files, names=None, at_once=map):
         """Runs files through both; the checker's reports in the order of the files."""
-        reports, differing, loops, accepted = [], 0, 0, 0
-        for start in range(0, len(files), 50):
-            some = files[start : start + 50]
-            for path, said in zip(some, said_by_command(self.command, some, self.scratch), strict=True):
-                report = knitout_check.check(path, history=True)
-                found = differences(said, report)
-                loops += report["loops_made"]
-                accepted += report["accepted"]
-                if found:
-                    differing += 1
-                    if differing <= 10:
-                        self.fail(f"{kind} {names[path] if names else path}: {found[0]}")
-                for key in ("loops", "uses"):
-                    del report[key]  # most of the memory
-                reports.append(report)
-        print(f"{kind}: {len(files)} programmes, {accepted} accepted, {loops} loops, {differing} differ")
-        self.failed = self.failed or differing > 0
+        batches = [files[start : start + 20] for start in range(0, len(files), 20)]
+        run = functools.partial(compared, self.command, scratch=self.scratch)
+        results = [result for batch in at_once(run, batches) for result in batch]
+        differing = [(path, found) for path, (_, found) in zip(files, results) if found]
+        self.failed = self.failed or bool(differing)
+        for path, found in differing[:10]:
+            self.fail(f"{kind} {names[path] if names else path}: {found[0]}")
+        reports = [report for report, _ in results]
+        accepted, loops = sum(r["accepted"] for r in reports), sum(r["loops_made"] for r in reports)
+        print(f"{kind}: {len(files)} programmes, {accepted} accepted, {loops} loops, {len(differing)} differ")
         return reports
 
     def corpus(self, files, manifest):
@@ -127,7 +134,9 @@ class Comparison:
             for row in csv.DictReader(manifest.open(encoding="utf-8"), delimiter="\t"):
                 if row["shima_converter"] == "ok":
                     taken.add(manifest.parent / row["file"])
-        for path, report in zip(files, self.compare("corpus", files)):
+        with concurrent.futures.ProcessPoolExecutor(2) as pool:
+            reports = self.compare("corpus", files, at_once=pool.map)
+        for path, report in zip(files, reports):
             if path in taken and not report["accepted"]:
                 self.fail(f"corpus {path}: the converter took it: {report['errors'][0]}")
 
@@ -162,7 +171,6 @@ def main():
     parser.add_argument("--seed", type=int, default=20)
     parser.add_argument("--keep", help="folder for the programmes that are written, to look at them")
     asked = parser.parse_args()
-    gc.disable()  # nothing here is cyclic, and looking for cycles took half of the time
     corpus = pathlib.Path(os.environ.get("LOOPWRIGHT_CORPUS", asked.corpus))
     real = sorted(p for p in corpus.glob("*/*") if p.suffix in (".k", ".knitout"))
     with tempfile.TemporaryDirectory() as folder:

@@ -34,7 +34,7 @@ void add_curves(const LoopModel& model, const NetState& state, StructureStyle st
                 StructureScene& scene) {
   const YarnCurves curves = curves_at(model, state);
   constexpr int steps = 6;
-  const double dash = model.geometry.shape_radius();
+  const double dash = 0.6 * model.geometry.shape_radius();
   for (const CurveYarn& yarn : curves.yarns) {
     std::vector<Vec3> points;
     for (const TypePoint& p : yarn.points)

@@ -19,7 +19,8 @@ namespace {
 // Masses a piece of work; fixed, so that sums do not depend on the number of threads. Its forces fit into a
 // core's second cache.
 constexpr std::size_t piece_size = 8192;
-constexpr std::size_t batch = 128;  // springs whose roots are drawn together
+constexpr std::size_t shortest_run = 6;  // on average, for which runs are worth their overhead
+constexpr std::size_t batch = 128;       // springs whose roots are drawn together
 
 std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
@@ -127,6 +128,45 @@ void NetKernel::make_bonds() {
       }
     pieces_[p].end = bonds_.size();
   }
+  // couplings and rest vectors are looked up by bond
+  if (!couplings_.empty() || law_ == SpringLaw::vector) return;
+  for (Piece& piece : pieces_) {
+    piece.inner_runs = runs_.size();
+    piece.border_runs = append_runs(piece.inner, piece.border);
+    piece.end_runs = append_runs(piece.border, piece.end);
+    const std::size_t count = piece.end_runs - piece.inner_runs;
+    if (count * shortest_run > piece.end - piece.inner) {
+      runs_.resize(piece.inner_runs);
+      piece.border_runs = piece.end_runs = piece.inner_runs;
+    }
+  }
+}
+
+// Bonds are ordered by their first masses, so runs of different types lie in turns: as many open runs as
+// types.
+std::size_t NetKernel::append_runs(std::size_t begin, std::size_t end) {
+  std::map<std::pair<std::int32_t, std::int32_t>, std::size_t> open;  // by type and a's next value
+  for (std::size_t k = begin; k < end; ++k) {
+    const Bond& bond = bonds_[k];
+    const auto found = open.find({bond.type, bond.a});
+    bool joined = false;
+    if (found != open.end()) {
+      Run& run = runs_[found->second];
+      const std::int32_t forward = run.b + run.count, backward = run.b - run.count;
+      if (run.count == 1) run.backward = bond.b == backward;
+      if (bond.b == (run.backward ? backward : forward)) {
+        const std::size_t which = found->second;
+        ++run.count;
+        open.erase(found);
+        open[{bond.type, bond.a + 1}] = which;
+        joined = true;
+      }
+    }
+    if (joined) continue;
+    open[{bond.type, bond.a + 1}] = runs_.size();
+    runs_.push_back({bond.a, bond.b, 1, bond.type, false});
+  }
+  return runs_.size();
 }
 
 void NetKernel::bound_step(const MassSpringNet& net) {
@@ -231,9 +271,59 @@ void NetKernel::add_bonds(const Piece& piece, std::size_t begin, std::size_t end
   }
 }
 
+namespace {
+
+// Differences, and later forces, of springs a + i to b + i or b - i.
+template <bool backward>
+void differences(const double* a, const double* b, std::size_t count, double* d) {
+  for (std::size_t i = 0; i < count; ++i)
+    d[i] = *(backward ? b - static_cast<std::ptrdiff_t>(i) : b + static_cast<std::ptrdiff_t>(i)) - a[i];
+}
+template <bool backward>
+void take_away(const double* share, const double* d, std::size_t count, double* b) {
+  for (std::size_t i = 0; i < count; ++i)
+    *(backward ? b - static_cast<std::ptrdiff_t>(i) : b + static_cast<std::ptrdiff_t>(i)) -= share[i] * d[i];
+}
+
+}  // namespace
+
+void NetKernel::add_run(const Piece& piece, const Run& run, bool both, const NetState& state,
+                        Forces& forces) const {
+  const double stiffness = types_[at(run.type)].stiffness, pull = stiffness * types_[at(run.type)].rest;
+  std::array<std::array<double, batch>, 3> d;
+  std::array<double, batch> share;
+  const std::array<const double*, 3> place{state.x.data(), state.y.data(), state.z.data()};
+  const std::array<double*, 3> force{forces.x.data(), forces.y.data(), forces.z.data()};
+  for (std::size_t k = 0; k < at(run.count); k += batch) {
+    const std::size_t count = std::min(batch, at(run.count) - k), a = at(run.a) + k;
+    const std::size_t b = run.backward ? at(run.b) - k : at(run.b) + k;
+    for (std::size_t c = 0; c < 3; ++c)
+      run.backward ? differences<true>(place[c] + a, place[c] + b, count, d[c].data())
+                   : differences<false>(place[c] + a, place[c] + b, count, d[c].data());
+    constexpr double least = std::numeric_limits<double>::min();
+    for (std::size_t i = 0; i < count; ++i) {
+      const double square = d[0][i] * d[0][i] + d[1][i] * d[1][i] + d[2][i] * d[2][i];
+      share[i] = stiffness - pull / std::sqrt(square > least ? square : least);
+    }
+    for (std::size_t c = 0; c < 3; ++c) {
+      double* const fa = force[c] + (a - piece.first);
+      for (std::size_t i = 0; i < count; ++i) fa[i] += share[i] * d[c][i];
+      if (!both) continue;
+      double* const fb = force[c] + (b - piece.first);
+      run.backward ? take_away<true>(share.data(), d[c].data(), count, fb)
+                   : take_away<false>(share.data(), d[c].data(), count, fb);
+    }
+  }
+}
+
 void NetKernel::add_forces(const Piece& piece, const NetState& state, Forces& forces) const {
   const std::size_t count = piece.last - piece.first;
   for (auto* each : {&forces.x, &forces.y, &forces.z}) std::fill_n(each->begin(), count, 0.0);
+  if (piece.inner_runs < piece.end_runs) {
+    for (std::size_t r = piece.inner_runs; r < piece.end_runs; ++r)
+      add_run(piece, runs_[r], r < piece.border_runs, state, forces);
+    return;
+  }
   add_bonds(piece, piece.inner, piece.border, true, state, forces);
   add_bonds(piece, piece.border, piece.end, false, state, forces);
 }
@@ -361,12 +451,14 @@ NetEnergy NetKernel::energy(const NetState& state) const {
 }
 
 double NetKernel::bytes_per_mass() const {
-  const double bonds =
-      static_cast<double>(bonds_.size()) / static_cast<double>(std::max<std::size_t>(masses(), 1));
+  double list = static_cast<double>(runs_.size() * sizeof(Run));
+  for (const Piece& p : pieces_)
+    if (p.inner_runs == p.end_runs) list += static_cast<double>((p.end - p.inner) * sizeof(Bond));
   const bool classes =
       std::any_of(pieces_.begin(), pieces_.end(), [](const Piece& p) { return p.only_class < 0; });
   // x read, x written, v read, v written; the list of springs; the classes where they differ
-  return 4 * 3 * sizeof(double) + bonds * sizeof(Bond) + (classes ? sizeof(std::int32_t) : 0);
+  return 4 * 3 * sizeof(double) + list / static_cast<double>(std::max<std::size_t>(masses(), 1)) +
+         (classes ? sizeof(std::int32_t) : 0);
 }
 
 }  // namespace loopwright

@@ -70,6 +70,12 @@ class NetKernel {
   struct Bond {
     std::int32_t a, b, type;
   };
+  // Springs of one type from a + i to b + i (or b - i), i < count: a course of loops, and all its warp
+  // springs. Needs no list to be read, and the compiler turns it into vectors.
+  struct Run {
+    std::int32_t a, b, count, type;
+    bool backward;  // b - i
+  };
   struct SpringType {
     double stiffness, rest;
   };
@@ -78,6 +84,8 @@ class NetKernel {
   struct Piece {
     std::size_t first = 0, last = 0;
     std::size_t inner = 0, border = 0, end = 0;
+    // The same as runs, if they are long enough; else none.
+    std::size_t inner_runs = 0, border_runs = 0, end_runs = 0;
     std::int32_t only_class = -1;  // of all its masses, if they have one
   };
   enum class Moment : std::uint8_t { first, inner, last };
@@ -90,6 +98,8 @@ class NetKernel {
   void sweep(NetState& state, double half, double h);
   void couple(const NetState& state) const;
   void add_forces(const Piece& piece, const NetState& state, Forces& forces) const;
+  std::size_t append_runs(std::size_t begin, std::size_t end);
+  void add_run(const Piece& piece, const Run& run, bool both, const NetState& state, Forces& forces) const;
   void add_bonds(const Piece& piece, std::size_t begin, std::size_t end, bool both, const NetState& state,
                  Forces& forces) const;
   void move(const Piece& piece, const Forces& forces, NetState& state, double half, double h);
@@ -106,6 +116,7 @@ class NetKernel {
   std::vector<std::int32_t> class_of_;  // [mass]
   std::vector<Piece> pieces_;
   std::vector<Bond> bonds_;  // by piece
+  std::vector<Run> runs_;    // by piece
   std::vector<SpringType> types_;
   std::vector<Vec3> rest_vectors_;         // [type], law vector, from a to b
   std::vector<std::int32_t> bond_spring_;  // [bond] its spring, only with couplings

@@ -59,6 +59,7 @@ struct Line {
          yarn = 0;             // heights of the rows of dots and of the yarn, upwards from the bottom
   double bottom = 0, top = 0;  // of what is drawn
   bool has_rear = false;       // the rear bed is drawn
+  int column = 0;              // of the sheet
 };
 
 class Drawing {
@@ -70,9 +71,14 @@ class Drawing {
     open();
     title();
     shade_courses();
-    for (const Line& line : lines_) draw(line);
-    needle_numbers();
-    repeat_mark();
+    for (const Line& line : lines_) {
+      column_ = line.column;
+      draw(line);
+    }
+    for (column_ = 0; column_ < columns_; ++column_) {
+      needle_numbers();
+      repeat_mark();
+    }
     text_ += "</svg>\n";
     return std::move(text_);
   }
@@ -81,52 +87,101 @@ class Drawing {
   // --- places
 
   void lay_out() {
-    double top = 0.9;  // needle numbers stand below
     least_slot_ = diagram_.first_needle;
     most_slot_ = diagram_.first_needle + std::max(diagram_.wales, 1) - 1;
-    for (const DiagramPass& pass : diagram_.passes) {
-      // a pass that keeps to the front bed needs one row of dots, transfers need both and no room for loops
-      const auto meant = [](const DiagramNeedle& needle) {
-        return needle.operation != NeedleOperation::unused && needle.operation != NeedleOperation::inactive;
-      };
-      Line line;
-      line.pass = &pass;
-      line.has_rear =
-          diagram_.rear_bed && (!pass.carries_yarn || std::any_of(pass.rear.begin(), pass.rear.end(), meant));
-      const double reach = pass.carries_yarn ? loop_depth : 0;
-      line.bottom = top;
-      line.front = top + reach;
-      line.rear = line.front + bed_distance;
-      line.yarn = line.front + bed_distance / 2;
-      line.top = line.has_rear ? line.rear + reach : line.yarn;
-      top = line.top + line_space;
-      lines_.push_back(line);
-      if (!line.has_rear) continue;
-      for (const DiagramNeedle& needle : pass.rear) {
-        least_slot_ = std::min(least_slot_, needle.slot);
-        most_slot_ = std::max(most_slot_, needle.slot);
-      }
-    }
+    for (const DiagramPass& pass : diagram_.passes) lines_.push_back(line_of(pass));
     used_.assign(diagram_.yarns.size(), false);
     for (const DiagramPass& pass : diagram_.passes)
       for (const int yarn : pass.yarns) used_[static_cast<std::size_t>(yarn)] = true;
     several_ = std::count(used_.begin(), used_.end(), true) > 1;
-    height_ = top;
-    const double width = most_slot_ - least_slot_ + 2;
-    const double labels_mm = (left_labels + right_labels) * least_label_mm;
-    const double fit_width =
-        std::min((page_width_mm - labels_mm) / width, page_width_mm / (width + left_labels + right_labels));
-    const double fit = std::min(fit_width, (page_height_mm - title_mm()) / height_);
-    pitch_mm_ = std::clamp(fit, narrowest_pitch_mm, widest_pitch_mm);
-    width_mm_ = std::max(width * pitch_mm_ + (left_labels + right_labels) * label_mm(),
-                         6 + 2.5 * static_cast<double>(diagram_.name.size()));
+    // columns where the lines would become too small for one
+    constexpr int most_columns = 4;
+    constexpr double easily_read_mm = 4;
+    pitch_mm_ = fitting_pitch(1);
+    for (int columns = 2; columns <= most_columns && pitch_mm_ < easily_read_mm; ++columns) {
+      const double pitch = fitting_pitch(columns);
+      if (pitch < 1.2 * pitch_mm_) continue;
+      pitch_mm_ = pitch;
+      columns_ = columns;
+    }
+    if (pitch_mm_ < narrowest_pitch_mm) columns_ = 1;
+    pitch_mm_ = std::clamp(pitch_mm_, narrowest_pitch_mm, widest_pitch_mm);
+    stack(columns_);
+    column_mm_ = graph_width() * pitch_mm_ + (left_labels + right_labels) * label_mm();
+    width_mm_ = std::max(columns_ * column_mm_, 6 + 2.5 * static_cast<double>(diagram_.name.size()));
     height_mm_ = height_ * pitch_mm_ + title_mm();
+  }
+
+  // A line by itself, standing on 0.
+  Line line_of(const DiagramPass& pass) {
+    // a pass that keeps to the front bed needs one row of dots, transfers need both and no room for loops
+    const auto meant = [](const DiagramNeedle& needle) {
+      return needle.operation != NeedleOperation::unused && needle.operation != NeedleOperation::inactive;
+    };
+    Line line;
+    line.pass = &pass;
+    line.has_rear =
+        diagram_.rear_bed && (!pass.carries_yarn || std::any_of(pass.rear.begin(), pass.rear.end(), meant));
+    const double reach = pass.carries_yarn ? loop_depth : 0;
+    line.front = reach;
+    line.rear = line.front + bed_distance;
+    line.yarn = line.front + bed_distance / 2;
+    line.top = line.has_rear ? line.rear + reach : line.yarn;
+    for (const DiagramNeedle& needle : pass.rear) {
+      if (!line.has_rear) break;
+      least_slot_ = std::min(least_slot_, needle.slot);
+      most_slot_ = std::max(most_slot_, needle.slot);
+    }
+    return line;
+  }
+
+  double graph_width() const { return most_slot_ - least_slot_ + 2; }
+
+  // The pitch at which so many columns fit the page.
+  double fitting_pitch(int columns) {
+    stack(columns);
+    const double room_mm = page_width_mm / columns, labels = left_labels + right_labels;
+    return std::min({(room_mm - labels * least_label_mm) / graph_width(), room_mm / (graph_width() + labels),
+                     (page_height_mm - title_mm()) / height_, widest_pitch_mm});
+  }
+
+  // Stacks the lines in so many columns of like height, upwards, without parting a course; sets height_.
+  void stack(int columns) {
+    constexpr double numbers = 0.9;  // needle numbers stand below
+    double all = 0;
+    for (const Line& line : lines_) all += line.top - line.bottom + line_space;
+    for (double limit = all / columns;; limit *= 1.02) {
+      int column = 0;
+      double top = 0;
+      height_ = 0;
+      for (std::size_t i = 0; i < lines_.size();) {
+        std::size_t end = i;
+        double course = 0;
+        for (; end < lines_.size() && lines_[end].pass->course == lines_[i].pass->course; ++end)
+          course += lines_[end].top - lines_[end].bottom + line_space;
+        if (top > 0 && top + course > limit * (1 + 1e-9)) {
+          ++column;
+          top = 0;
+        }
+        for (; i < end; ++i) {
+          Line& line = lines_[i];
+          const double rise = numbers + top - line.bottom;
+          for (double* height : {&line.front, &line.rear, &line.yarn, &line.bottom, &line.top})
+            *height += rise;
+          line.column = column;
+          top += line.top - line.bottom + line_space;
+        }
+        height_ = std::max(height_, numbers + top);
+      }
+      if (column < columns) return;
+    }
   }
 
   double title_mm() const { return (diagram_.name.empty() ? 1 : 8) + (several_ ? 5 : 0); }
 
   double label_mm() const { return std::max(pitch_mm_, least_label_mm); }
-  double x(double slot) const { return (slot - least_slot_ + 1) * pitch_mm_ + left_labels * label_mm(); }
+  double x(double slot) const { return (slot - least_slot_ + 1) * pitch_mm_ + left(left_labels); }
+  double left(double labels) const { return column_ * column_mm_ + labels * label_mm(); }
   double y(double height) const { return height_mm_ - height * pitch_mm_; }
   double text_mm() const { return std::max(0.48 * pitch_mm_, least_text_mm); }
 
@@ -197,7 +252,8 @@ class Drawing {
       std::size_t end = i;
       while (end < lines_.size() && lines_[end].pass->course == lines_[i].pass->course) ++end;
       const double bottom = lines_[i].bottom - line_space / 2;
-      const double top = end < lines_.size() ? lines_[end].bottom - line_space / 2 : height_;
+      const double top = lines_[end - 1].top + line_space / 2;
+      column_ = lines_[i].column;
       if (lines_[i].pass->course % 2 == 0)
         put("<rect x=\"%.2f\" y=\"%.2f\" width=\"%.2f\" height=\"%.2f\" fill=\"#f3f1ea\"/>\n",
             x(least_slot_ - 0.8), y(top), (most_slot_ - least_slot_ + 1.6) * pitch_mm_,
@@ -206,7 +262,7 @@ class Drawing {
       std::size_t knits = i;
       while (knits < end && !lines_[knits].pass->carries_yarn) ++knits;
       if (knits < end)
-        write(0.9 * label_mm(), y(lines_[knits].yarn) + 0.35 * text_mm(), text_mm(), "end",
+        write(left(0.9), y(lines_[knits].yarn) + 0.35 * text_mm(), text_mm(), "end",
               std::to_string(lines_[i].pass->course));
       i = end;
     }
@@ -377,11 +433,10 @@ class Drawing {
     std::string names;
     for (const int yarn : pass.yarns)
       names += (names.empty() ? "" : "+") + diagram_.yarns[static_cast<std::size_t>(yarn)].name;
-    if (several_) write(1.2 * label_mm(), y(line.yarn) + 0.35 * text_mm(), text_mm(), "start", names);
+    if (several_) write(left(1.2), y(line.yarn) + 0.35 * text_mm(), text_mm(), "start", names);
     // an arrow of the carriage's direction
     const bool right = pass.direction != Direction::left;
-    const double tail = (right ? 2.05 : 2.65) * label_mm(), tip = (right ? 2.65 : 2.05) * label_mm(),
-                 at = y(line.yarn);
+    const double tail = left(right ? 2.05 : 2.65), tip = left(right ? 2.65 : 2.05), at = y(line.yarn);
     const double barb = (right ? -0.2 : 0.2) * pitch_mm_, half = 0.13 * pitch_mm_;
     put("<path d=\"M%.2f %.2fH%.2fm%.2f %.2fl%.2f %.2fl%.2f %.2f\" stroke=\"#333333\" "
         "stroke-width=\"%.2f\"/>\n",
@@ -434,9 +489,10 @@ class Drawing {
 
   const NeedleDiagram& diagram_;
   std::vector<Line> lines_;
-  std::vector<bool> used_;  // by yarn
-  bool several_ = false;    // yarns are used
-  double least_slot_ = 0, most_slot_ = 0, height_ = 0;
+  std::vector<bool> used_;        // by yarn
+  bool several_ = false;          // yarns are used
+  int columns_ = 1, column_ = 0;  // of the sheet; the one being drawn
+  double least_slot_ = 0, most_slot_ = 0, height_ = 0, column_mm_ = 0;
   double pitch_mm_ = widest_pitch_mm, width_mm_ = 0, height_mm_ = 0;
   std::string text_;
 };

@@ -12,7 +12,8 @@ namespace loopwright {
 /// round a needle that knits, goes into the hook of one that tucks and past one that misses; a cross is an
 /// inactive needle, an upright arrow a transfer (dashed where the notation leaves it unsaid), a level arrow
 /// along the rear bed a racking. The pitch is 7 mm, or less, down to 2.6 mm, where that lets the drawing fit
-/// the text area of an A4 page (186 mm x 273 mm); a larger one gets a larger sheet.
+/// the text area of an A4 page (186 mm x 273 mm), in up to four columns of courses where there are many
+/// lines; a larger one gets a larger sheet.
 std::string diagram_svg(const NeedleDiagram& diagram);
 
 /// Writes it; `-` is standard output. Throws FileError.

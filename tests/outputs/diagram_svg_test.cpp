@@ -151,6 +151,25 @@ TEST(DiagramSvg, TwentyFourBySquareFitsAnA4PageForEveryExample) {
   EXPECT_GE(files, 16);
 }
 
+TEST(DiagramSvg, TheLibraryHasItsSourcesAndDrawingsAsTheyAre) {
+  const auto folder = std::filesystem::path(LOOPWRIGHT_SOURCE_DIR) / "examples" / "structures";
+  const std::string page = test::content(folder / ".." / ".." / "docs" / "structures.md");
+  int files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() != ".verm") continue;
+    Diagnostics diagnostics(entry.path().filename());
+    const std::string text = *read_text(entry.path(), diagnostics);
+    EXPECT_THAT(text, HasSubstr("\n; Source: ")) << entry.path();
+    const std::filesystem::path drawing = std::filesystem::path(entry.path()).replace_extension(".svg");
+    EXPECT_EQ(test::content(drawing), diagram_svg(needle_diagram(parse_vermiculation(text, diagnostics))))
+        << "draw it again: loopwright diagram " << entry.path() << " -o " << drawing;
+    EXPECT_THAT(page, HasSubstr("structures/" + entry.path().filename().string()))
+        << "tell it in docs/structures.md";
+    ++files;
+  }
+  EXPECT_GE(files, 26);
+}
+
 using DiagramSvgFile = test::TemporaryFolder;
 
 TEST_F(DiagramSvgFile, IsWrittenWholeOrNotAtAll) {

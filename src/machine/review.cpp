@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "machine/needle_table.hpp"
 #include "machine/racking.hpp"
+#include "machine/rails.hpp"
 #include "machine/run_machine.hpp"
 
 namespace loopwright {
@@ -38,6 +38,7 @@ class Reviewer {
     hook();
     caught_yarns();
     twisted_tucks();
+    review_rails(program_, record_, diagnostics_);
     if (is_fabric_) return;
     adjacent_cast_on();
     left_hanging();

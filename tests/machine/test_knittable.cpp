@@ -2,6 +2,7 @@
 // is for tests/topology to say.)
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -108,6 +109,20 @@ std::string knitout_of(const std::string& courses, MachineKind machine, Edges ed
   for (std::string line; std::getline(lines, line);)
     if (!line.starts_with(";")) body += line.substr(0, line.find(" ;!source")) + "; ";
   return body;
+}
+
+TEST(Knittable, plating_is_for_a_shima_alone) {
+  const std::string text =
+      ";!vermiculation-1\n;;Yarn-A: wool 2/28 Nm\n;;Yarn-B: wool 2/28 Nm\n;;Size: 6 wales x 6 courses\n"
+      "A: ggg\nB+A: gev\nA+B: gg. / .ee\n";
+  expect_knittable(text, Edges::free, MachineKind::shima, "plating");
+  expect_knittable(text, Edges::bound_off, MachineKind::shima, "plating");
+  Diagnostics said;
+  const Program fabric = read_program_text(text, ".verm", said);
+  const KnittableProgram knittable = make_knittable(fabric, MachineKind::kniterate, said);
+  const Written written = read_back(write_knitout(knittable.program), MachineKind::kniterate);
+  const auto told = [](const Diagnostic& d) { return d.message.find("at most 1 yarn") != std::string::npos; };
+  EXPECT_TRUE(std::any_of(written.said.list().begin(), written.said.list().end(), told)) << written.said;
 }
 
 TEST(Knittable, plain_is_tucked_on_there_and_back) {

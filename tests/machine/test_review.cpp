@@ -106,5 +106,20 @@ TEST(ReviewOfGauge, an_inch_has_as_many_needles_as_the_gauge_says) {
   EXPECT_TRUE(says(said, Severity::advice, 6, "floats over 6 needles")) << said;
 }
 
+TEST(ReviewOfRails, carriers_of_one_rail_cannot_pass_each_other) {
+  const auto said_of = [](const std::string& carriers, const std::string& lines) {
+    Diagnostics said;
+    const Program program = read_knitout(";!knitout-2\n;;Carriers: " + carriers + "\n" + lines, said);
+    review(program, run_machine(program, said), said);
+    return said;
+  };
+  const std::string passing = "in L\nin R\ntuck + f1 L\ntuck + f5 R\ntuck + f7 L\nout L R\n";
+  EXPECT_TRUE(says(said_of("1 L;R 2", passing), Severity::warning, 7, "carrier L goes past carrier R"));
+  EXPECT_FALSE(says(said_of("1 L R 2", passing), Severity::warning, 7, "goes past"));
+  EXPECT_FALSE(says(said_of("1,L R;2", passing), Severity::warning, 7, "goes past"));
+  const std::string apart = "in L\nin R\ntuck + f1 L\ntuck + f5 R\nout R\ntuck + f7 L\nout L\n";
+  EXPECT_FALSE(says(said_of("1 L;R 2", apart), Severity::warning, 8, "goes past"));
+}
+
 }  // namespace
 }  // namespace loopwright

@@ -150,7 +150,8 @@ TEST(KnittableGraph, random_fabrics_keep_theirs) {
                        " courses\n";
     const int courses = 1 + static_cast<int>(random() % 4), width = 1 + static_cast<int>(random() % 4);
     for (int c = 0; c < courses; ++c) {
-      const std::string feeder = random() % 3 == 0 ? "B: " : "";
+      const std::string feeders[] = {"", "", "B: ", "B: ", "A+B: ", "B+A: "};
+      const std::string feeder = feeders[random() % 6];
       switch (random() % 4) {
         case 0:
           text += feeder + row("ggge", width) + "\n";

@@ -187,10 +187,11 @@ class Drawing {
 
   // --- SVG
 
+  void put(const char* text) { text_ += text; }
   template <class... Values>
-  void put(const char* format, Values... values) {
+  void put(const char* format, double first, Values... more) {
     std::array<char, 512> buffer{};
-    const int size = std::snprintf(buffer.data(), buffer.size(), format, values...);
+    const int size = std::snprintf(buffer.data(), buffer.size(), format, first, more...);
     text_.append(buffer.data(), static_cast<std::size_t>(std::clamp(size, 0, 511)));
   }
 
@@ -244,7 +245,8 @@ class Drawing {
       put(" stroke=\"#555555\" stroke-width=\"%.2f\"/>\n", width * 1.5);
       text_ += path;
     }
-    put(" stroke=\"%s\" stroke-width=\"%.2f\"/>\n", colour, width);
+    text_ += std::string(" stroke=\"") + colour;
+    put("\" stroke-width=\"%.2f\"/>\n", width);
   }
 
   void shade_courses() {
@@ -273,7 +275,7 @@ class Drawing {
   void draw(const Line& line) {
     const DiagramPass& pass = *line.pass;
     put("<g><title>");
-    if (pass.at.line > 0) put("line %d: ", pass.at.line);
+    if (pass.at.line > 0) text_ += "line " + std::to_string(pass.at.line) + ": ";
     text_ += pass.carries_yarn ? "course " + std::to_string(pass.course) : "transfers";
     put("</title>\n");
     draw_needles(pass.front, line.front, pass);
@@ -313,7 +315,8 @@ class Drawing {
     const auto finish = [&](const std::string& path, const char* colour, double width) {
       if (path.empty()) return;
       text_ += "<path d=\"" + path;
-      put("\" stroke=\"%s\" stroke-width=\"%.2f\"/>\n", colour, width);
+      text_ += std::string("\" stroke=\"") + colour;
+      put("\" stroke-width=\"%.2f\"/>\n", width);
     };
     // a stroke of no length with round ends is a dot
     finish(faint, "#b5b5b5", 1.5 * r);

@@ -56,7 +56,10 @@ CorrelationMap::CorrelationMap(const YarnGraph& graph, const BindingPoints& poin
       const int order = graph.loop(of).order + step;
       if (order < 0 || order >= static_cast<int>(yarn.size())) return LoopId();
       const LoopId other = yarn[static_cast<std::size_t>(order)];
-      return joined_by_weft(points, of, other) ? other : LoopId();
+      // where the yarn turns, as round the edge of a flat tube, the loops were placed as if it went straight
+      // on
+      const bool turns = graph.loop(other).direction != graph.loop(of).direction;
+      return !turns && joined_by_weft(points, of, other) ? other : LoopId();
     };
     LoopId before = neighbour(id, -1), after = neighbour(id, 1);
     // At an end of a course the second neighbour, which lies on the same bed in a 1 x 1 rib.

@@ -1,0 +1,154 @@
+#include "loop_scale/relaxed_layout.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace loopwright {
+namespace {
+
+std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
+
+// Loops first .. last of a yarn, neighbours in a course, all in one direction.
+struct Run {
+  std::size_t yarn = 0, first = 0, last = 0;
+};
+
+std::vector<Run> runs_of(const YarnGraph& graph, const BindingPoints& points) {
+  std::vector<Run> runs;
+  for (std::size_t y = 0; y < graph.yarns.size(); ++y) {
+    const std::vector<LoopId>& loops = graph.yarns[y].loops;
+    for (std::size_t first = 0; first < loops.size();) {
+      std::size_t last = first;
+      while (last + 1 < loops.size() && joined_by_weft(points, loops[last], loops[last + 1]) &&
+             graph.loop(loops[last]).direction == graph.loop(loops[last + 1]).direction)
+        ++last;
+      runs.push_back({y, first, last});
+      first = last + 1;
+    }
+  }
+  return runs;
+}
+
+// Runs in turn on the front and on the back bed, with the yarn going over as a weft spring: rounds of a tube.
+struct Round {
+  Run one, other;
+};
+
+std::vector<Round> rounds_of(const YarnGraph& graph, const BindingPoints& points) {
+  std::vector<Round> rounds;
+  const std::vector<Run> runs = runs_of(graph, points);
+  for (std::size_t k = 0; k + 1 < runs.size(); ++k) {
+    const Run &one = runs[k], &other = runs[k + 1];
+    if (one.yarn != other.yarn || one.last == one.first || other.last == other.first) continue;
+    const std::vector<LoopId>& loops = graph.yarns[one.yarn].loops;
+    const auto bed = [&](const Run& run) { return graph.loop(loops[run.first]).side; };
+    const auto one_bed = [&](const Run& run) {
+      for (std::size_t i = run.first; i <= run.last; ++i)
+        if (graph.loop(loops[i]).side != bed(run)) return false;
+      return true;
+    };
+    if (bed(one) == bed(other) || !one_bed(one) || !one_bed(other)) continue;
+    if (graph.loop(loops[one.first]).direction == graph.loop(loops[other.first]).direction) continue;
+    if (!joined_by_weft(points, loops[one.last], loops[other.first])) continue;
+    rounds.push_back({one, other});
+    ++k;
+  }
+  return rounds;
+}
+
+// Outward forces that hold the two sides of a tube apart.
+Load apart(const YarnGraph& graph, const LoopModel& model, StitchSide side, double force) {
+  Load load;
+  std::vector<char> taken(model.net.mass.size());
+  for (const Round& round : rounds_of(graph, model.points))
+    for (const Run& run : {round.one, round.other})
+      for (std::size_t i = run.first; i <= run.last; ++i) {
+        const LoopId id = graph.yarns[run.yarn].loops[i];
+        const std::int32_t mass = model.points.lower[id.position()];
+        if (graph.loop(id).side == side && !taken[at(mass)]++) load.masses.push_back(mass);
+      }
+  load.force = {0, 0, side == StitchSide::front ? force : -force};
+  return load;
+}
+
+}  // namespace
+
+LoopModelOptions layout_options() {
+  LoopModelOptions options;
+  options.shear = 0.1;
+  options.fold = 0.25;
+  options.bend = 0.1;
+  return options;
+}
+
+SettleOptions layout_settling() {
+  SettleOptions options;
+  options.tolerance = 2e-4;
+  return options;
+}
+
+RelaxedLayout relaxed_layout(const YarnGraph& graph, const Program& program, const LoopModelOptions& options,
+                             const SettleOptions& settling) {
+  RelaxedLayout layout{build_loop_model(graph, program, options), {}, {}, {}};
+  LoopModel& model = layout.model;
+  layout.state = state_at_rest(model.start);
+  // A weak push for as long as a wave takes to cross the piece a few times.
+  const double step = NetKernel(model.net).stable_step();
+  const double push = 0.002 * stiffness_unit(model.yarn) * model.yarn.loop_length * 1000;
+  const double long_enough = 40 * step * std::sqrt(static_cast<double>(model.net.mass.size()));
+  for (const StitchSide side : {StitchSide::front, StitchSide::rear}) {
+    Load load = apart(graph, model, side, push);
+    if (load.masses.empty()) continue;
+    load.factor = {{0, 1}, {long_enough / 2, 1}, {long_enough, 0}};
+    model.net.loads.push_back(std::move(load));
+  }
+  NetKernel kernel(model.net);
+  layout.result = settle(kernel, model.net, layout.state, settling);
+  layout.curves = curves_at(model, layout.state);
+  return layout;
+}
+
+std::vector<CourseMeasure> course_measures(const YarnGraph& graph, const RelaxedLayout& layout) {
+  std::vector<CourseMeasure> measures;
+  for (const Run& run : runs_of(graph, layout.model.points)) {
+    CourseMeasure measure;
+    const std::vector<LoopId>& loops = graph.yarns[run.yarn].loops;
+    measure.pass = graph.loop(loops[run.first]).pass;
+    const auto place = [&](std::size_t i) {
+      return layout.state.position(at(layout.model.points.lower[loops[i].position()]));
+    };
+    for (std::size_t i = run.first; i <= run.last; ++i) {
+      ++measure.stitches;
+      measure.height += place(i).y;
+      if (i > run.first) measure.width += distance(place(i - 1), place(i));
+    }
+    measure.height /= measure.stitches;
+    measures.push_back(measure);
+  }
+  return measures;
+}
+
+std::vector<RoundMeasure> round_measures(const YarnGraph& graph, const RelaxedLayout& layout) {
+  std::vector<RoundMeasure> measures;
+  for (const Round& round : rounds_of(graph, layout.model.points)) {
+    std::vector<Vec3> ring;
+    for (const Run& run : {round.one, round.other})
+      for (std::size_t i = run.first; i <= run.last; ++i)
+        ring.push_back(
+            layout.state.position(at(layout.model.points.lower[graph.yarns[run.yarn].loops[i].position()])));
+    RoundMeasure measure;
+    measure.loops = static_cast<int>(ring.size());
+    Vec3 area;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const Vec3 &p = ring[i], &q = ring[(i + 1) % ring.size()];
+      measure.perimeter += distance(p, q);
+      area += cross(p - ring[0], q - ring[0]) / 2;
+    }
+    measure.roundness = norm(area) * 4 * std::numbers::pi / (measure.perimeter * measure.perimeter);
+    measures.push_back(measure);
+  }
+  return measures;
+}
+
+}  // namespace loopwright

@@ -1,0 +1,45 @@
+// The loop-scale model as a layout: where increases, decreases, short rows and tubes find their shape before
+// there is yarn. Gives first curves with the interlacings of the machine's record, for the yarn-scale model.
+#pragma once
+#include <vector>
+
+#include "loop_scale/loop_model.hpp"
+#include "loop_scale/settle.hpp"
+
+namespace loopwright {
+
+struct RelaxedLayout {
+  LoopModel model;
+  NetState state;
+  SettleResult result;
+  YarnCurves curves;  // at `state`
+};
+
+// What a layout needs beside weft and warp springs: shear, else courses slide along each other; folds;
+// bending, else a tube stays flat.
+LoopModelOptions layout_options();
+SettleOptions layout_settling();  // to 2e-4
+
+// Relaxes in the plane of the start unless the piece has two beds. Tubes are opened: a pressure that holds
+// them apart acts at first and is taken away again.
+RelaxedLayout relaxed_layout(const YarnGraph& graph, const Program& program,
+                             const LoopModelOptions& options = layout_options(),
+                             const SettleOptions& settling = layout_settling());
+
+// A run of loops that neighbours in a course make in one direction on one bed.
+struct CourseMeasure {
+  int pass = 0, stitches = 0;
+  double width = 0;   // along the lower binding points, in d
+  double height = 0;  // mean y of them
+};
+std::vector<CourseMeasure> course_measures(const YarnGraph& graph, const RelaxedLayout& layout);
+
+// A round of a tube: loops from one bed to the other and back.
+struct RoundMeasure {
+  int loops = 0;
+  double perimeter = 0;  // in d
+  double roundness = 0;  // enclosed area over that of a circle of this perimeter
+};
+std::vector<RoundMeasure> round_measures(const YarnGraph& graph, const RelaxedLayout& layout);
+
+}  // namespace loopwright

@@ -5,7 +5,9 @@
 #include <cstdlib>
 
 #include "notation/read_knitout.hpp"
+#include "notation/read_vermiculation.hpp"
 #include "notation/write_knitout.hpp"
+#include "notation/write_vermiculation.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace loopwright;
@@ -18,5 +20,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   const Program copy = read_knitout(write_knitout(program), again);
   if (copy.instructions.size() != program.instructions.size()) std::abort();
+  // as a fabric file: with a word on each thing that it cannot say, or whole
+  if (program.instructions.size() > 300) return 0;
+  Diagnostics lost("fuzz.k"), written("fuzz.verm");
+  const std::string fabric = write_vermiculation(program, lost);
+  FabricOptions options;
+  options.most_instructions = 100'000;
+  if (lost.ok() && (read_vermiculation(fabric, written, options), !written.ok())) std::abort();
   return 0;
 }

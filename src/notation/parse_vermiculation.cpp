@@ -13,7 +13,6 @@ namespace loopwright {
 namespace {
 
 constexpr std::string_view magic = ";!vermiculation-";
-constexpr std::size_t most_letters = 5'000'000;        // of the whole notation, repeats written out
 constexpr std::size_t most_lines = 100'000;            // the same in lines
 constexpr std::size_t most_written_lines = 1'000'000;  // kept as they stand; beyond, layout is not kept
 constexpr std::size_t most_yarns = 26;

@@ -1,6 +1,7 @@
 #include "notation/program_passes.hpp"
 
 #include <algorithm>
+#include <set>
 
 namespace loopwright {
 namespace {
@@ -19,8 +20,9 @@ class PassFinder {
       if (!goes_on(each)) begin_run(i, each);
       runs_.back().end = i + 1;
       last_ = &each;
-      used_.push_back(each.needle);
-      if (each.op == Op::xfer || each.op == Op::split) used_.push_back(each.target);
+      if (runs_.back().yarn) continue;
+      used_.insert(each.needle);
+      if (each.op == Op::xfer || each.op == Op::split) used_.insert(each.target);
     }
     return std::move(runs_);
   }
@@ -32,10 +34,7 @@ class PassFinder {
     if (!open_ || runs_.empty() || runs_.back().racking != racking_) return false;
     const bool yarn = carries_yarn(each);
     if (yarn != runs_.back().yarn) return false;
-    if (!yarn)
-      return std::none_of(used_.begin(), used_.end(), [&](Needle n) {
-        return n == each.needle || (each.op == Op::xfer && n == each.target);
-      });
+    if (!yarn) return !used_.contains(each.needle) && !(each.op == Op::xfer && used_.contains(each.target));
     if (each.direction != last_->direction || each.carriers != last_->carriers) return false;
     const double step = slot(each.needle) - slot(last_->needle);
     return each.direction == Direction::right ? step > 0 : step < 0;
@@ -60,7 +59,7 @@ class PassFinder {
   double racking_ = 0;
   bool open_ = false;
   const Instruction* last_ = nullptr;
-  std::vector<Needle> used_;                    // by the run
+  std::set<Needle> used_;                       // by a run of transfers
   std::vector<std::vector<CarrierId>> course_;  // carriers that have knitted in this course
   int courses_ = 1;
 };

@@ -192,6 +192,8 @@ class Decompiler {
                    (is_front(needle.bed) ? held(other) == 0 || held(needle) > 0 : held(other) == 0);
     }
     if (wanted) put_letters(pass, met, one_each);
+    // what takes the carrier past needles alone says so by its direction
+    if (wanted && !pass.knits()) pass.direction = first.direction;
     for (std::size_t i = source.begin; i < source.end; ++i) {
       const Instruction& each = program_.instructions[i];
       if (!carries_yarn(each) || each.op == Op::miss) continue;
@@ -504,6 +506,14 @@ std::string write_vermiculation(const Program& program, Diagnostics& diagnostics
   if (static_cast<std::size_t>(whole.wales) > most_wales) {
     diagnostics.error({}, "the programme is " + std::to_string(whole.wales) +
                               " needles wide; a fabric file writes at most " + std::to_string(most_wales));
+    return {};
+  }
+  std::size_t letters = 0;
+  for (const ProgramPass& pass : passes_of(program))
+    letters += (pass.yarn ? 1u : 2u) * static_cast<std::size_t>(whole.wales);
+  if (letters > most_letters) {
+    diagnostics.error({}, "the programme takes " + std::to_string(letters) +
+                              " letters; a fabric file has at most " + std::to_string(most_letters));
     return {};
   }
   const int warnings = diagnostics.warnings();

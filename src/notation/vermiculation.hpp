@@ -12,6 +12,8 @@
 
 namespace loopwright {
 
+inline constexpr std::size_t most_letters = 5'000'000;  // of a whole notation, repeats written out
+
 /// One letter of a course. g e: stitch on the front, rear bed; v n: tuck on the front, rear bed; T t:
 /// transfer to the front, rear bed; '.': missed needle, the yarn floats past; '-': inactive needle, nothing
 /// is done.

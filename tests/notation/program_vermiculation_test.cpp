@@ -112,6 +112,8 @@ TEST(ProgramAsVermiculation, RandomNotationsMakeTheSameOperations) {
     if (lost.warnings() + lost.errors() > 0) continue;
     const Program copy = read_vermiculation(written, again);
     ASSERT_TRUE(again.ok()) << "seed " << seed << '\n' << text << "---\n" << written << said(again);
+    // written once in this way it is the same for ever
+    ASSERT_EQ(write_vermiculation(copy, again), written) << "seed " << seed << '\n' << text;
     const int shift = copy.window.needles > 0 || program.window.needles > 0 ? 0 : first_needle(program);
     const auto made = operations(copy, copy.settings.repeat_wales > 0 && shift != 0 ? first_needle(copy) : 0);
     const auto wanted = operations(program, shift);

@@ -12,7 +12,7 @@
 namespace loopwright {
 namespace {
 
-std::string example(const std::string& name) { return LOOPWRIGHT_SOURCE_DIR "/examples/" + name; }
+std::string example(const std::string& name) { return LOOPWRIGHT_SOURCE_DIR "/examples/structures/" + name; }
 
 Knitting knitted(const std::string& file, const PieceRequest& request) {
   Diagnostics diagnostics(file);

@@ -2,6 +2,8 @@
 #include <iostream>
 
 #include "commands.hpp"
+#include "machine/machine_rules.hpp"
+#include "machine/review.hpp"
 #include "machine_state.hpp"
 #include "outputs/write_json.hpp"
 
@@ -21,8 +23,11 @@ JsonObject findings(const Diagnostics& diagnostics, const Knitting& knitting) {
   return {{"file", diagnostics.file()},
           {"errors", diagnostics.errors()},
           {"warnings", diagnostics.warnings()},
+          {"advice", diagnostics.advice()},
           {"instructions", knitting.program.instructions.size()},
           {"passes", knitting.record.passes},
+          {"carriage_passes", knitting.record.carriage_passes},
+          {"kick_backs", knitting.record.kick_backs.size()},
           {"yarns", knitting.graph.yarns.size()},
           {"loops", knitting.graph.loops.size()},
           {"interlacings", knitting.graph.interlacings.size()},
@@ -41,6 +46,9 @@ int run(const CheckCommand& command) {
   for (const std::string& file : command.files) {
     Diagnostics diagnostics(file);
     const Knitting knitting = knit(file, {}, diagnostics);
+    review(knitting.program, knitting.record, diagnostics);
+    if (const auto machine = machine_named(command.machine))
+      check_machine_rules(knitting.program, *machine, diagnostics);
     good = good && diagnostics.ok();
     out << diagnostics;
     if (diagnostics.ok())

@@ -16,8 +16,24 @@ inline constexpr int exit_good = 0, exit_error = 1, exit_interrupted = 130;
 struct CheckCommand {
   std::vector<std::string> files;
   std::string json, machine_state;
+  std::string machine;  // whose rules to ask as well: "shima", "kniterate" or nobody's
 };
 int run(const CheckCommand& command);
+
+struct DiagramCommand {
+  std::string file, out;
+  std::string size;           // wales x courses; empty: one repeat
+  bool whole = false;         // as large as the file says
+  int first = 1, most = 200;  // of a knitout file's passes
+};
+int run(const DiagramCommand& command);
+
+struct ConvertCommand {
+  std::string file, out;
+  std::string machine;    // "shima" or "kniterate"; empty: shima for fabric files, any for knitout
+  bool bind_off = false;  // instead of dropping the last loops
+};
+int run(const ConvertCommand& command);
 
 struct BuildCommand {
   std::string file, out, json;
@@ -39,12 +55,35 @@ struct RelaxCommand {
 };
 int run(const RelaxCommand& command);
 
+// What moves the loop-scale model (docs/loop_scale.md).
+struct LoopRequest {
+  std::string law = "along";
+  bool coupling = false, gravity = false;
+  double shear = 0, fold = 0.25, bend = 0, damping = 1;
+  std::vector<std::string> clamps, pulls;  // places; PLACE:cN
+  double take_down_cN = 0, ramp_s = 0;
+};
+
 struct RenderCommand {
   std::string file, out;
   PieceRequest piece;
   PictureRequest picture;
+  std::string style = "yarn";     // yarn, structure, sides
+  std::string moment = "stable";  // of the loop model: start, stable, both
+  LoopRequest loop;
 };
 int run(const RenderCommand& command);
+
+struct AnimateCommand {
+  std::string file, out;
+  std::string model = "loop", style = "structure";
+  LoopRequest loop;
+  PictureRequest picture;
+  int frames = 48, threads = 0;
+  std::optional<double> seconds;
+  bool no_pictures = false;
+};
+int run(const AnimateCommand& command);
 
 struct MeasureCommand {
   std::string file, json;

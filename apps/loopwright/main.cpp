@@ -14,9 +14,12 @@ using namespace loopwright;
 
 struct Commands {
   CheckCommand check;
+  DiagramCommand diagram;
+  ConvertCommand convert;
   BuildCommand build;
   RelaxCommand relax;
   RenderCommand render;
+  AnimateCommand animate;
   MeasureCommand measure;
 };
 
@@ -33,11 +36,43 @@ void add_piece_options(CLI::App& command, PieceRequest& piece) {
 
 void add_picture_options(CLI::App& command, PictureRequest& picture) {
   command.add_option("--view", picture.view, "Where the picture is taken from")
-      ->check(CLI::IsMember({"front", "back", "left", "top", "corner"}))
+      ->check(CLI::IsMember({"front", "back", "left", "top", "corner", "left-corner"}))
       ->capture_default_str();
   command.add_option("--picture-size", picture.size, "Pixels of the picture")
       ->type_name("WxH")
       ->capture_default_str();
+}
+
+void add_loop_options(CLI::App& command, LoopRequest& loop) {
+  const std::string group = "Loop model";
+  command.add_option("--spring-law", loop.law, "Springs act along themselves, or on the whole vector")
+      ->check(CLI::IsMember({"along", "vector"}))
+      ->capture_default_str()
+      ->group(group);
+  command
+      .add_flag("--coupling", loop.coupling, "A loop's yarn serves its width and height (Poisson's ratio)")
+      ->group(group);
+  command.add_option("--shear", loop.shear, "Diagonal springs, as a share of the weft springs")->group(group);
+  command.add_option("--fold", loop.fold, "Springs that keep the fold of rib and purl, as a share")
+      ->capture_default_str()
+      ->group(group);
+  command.add_option("--bend", loop.bend, "Springs over second neighbours, as a share")->group(group);
+  command.add_option("--damping", loop.damping, "Damping over that which settles fast")
+      ->capture_default_str()
+      ->group(group);
+  const std::string places = "top, bottom, left, right, corner, wale, course";
+  command.add_option("--clamp", loop.clamps, "Hold a place: " + places)->type_name("PLACE")->group(group);
+  command.add_option("--pull", loop.pulls, "Pull at a place outward, in cN: " + places)
+      ->type_name("PLACE[:cN]")
+      ->group(group);
+  command.add_option("--take-down", loop.take_down_cN, "Hold the top and pull the bottom, in cN")
+      ->type_name("cN")
+      ->check(CLI::PositiveNumber)
+      ->group(group);
+  command.add_option("--ramp", loop.ramp_s, "Pulls grow over so many seconds")
+      ->check(CLI::PositiveNumber)
+      ->group(group);
+  command.add_flag("--gravity", loop.gravity, "Weight along the wales, downward")->group(group);
 }
 
 using Action = std::function<int()>;
@@ -54,7 +89,36 @@ void add_commands(CLI::App& app, Commands& commands, Action& action) {
       ->add_option("--machine-state", commands.check.machine_state,
                    "Write where every loop and carrier went, as JSON to a file")
       ->type_name("FILE");
+  check->add_option("--machine", commands.check.machine, "Ask the rules of a make of machine as well")
+      ->check(CLI::IsMember({"shima", "kniterate"}));
   check->callback([&] { action = [&] { return run(commands.check); }; });
+
+  CLI::App* diagram = app.add_subcommand("diagram", "Draw the needle diagram on point paper");
+  diagram->add_option("FILE", commands.diagram.file, "Fabric or knitout file")->required();
+  diagram->add_option("-o,--out", commands.diagram.out, "The drawing, - for standard output")
+      ->type_name("SVG")
+      ->required();
+  diagram->add_option("--size", commands.diagram.size, "Wales and courses to draw; default: one repeat")
+      ->type_name("WxC");
+  diagram->add_flag("--whole", commands.diagram.whole, "As large as the file's Size says");
+  diagram->add_option("--first", commands.diagram.first, "First pass of a knitout file to draw")
+      ->check(CLI::Range(1, 100'000'000))
+      ->capture_default_str();
+  diagram->add_option("--passes", commands.diagram.most, "How many passes of a knitout file to draw")
+      ->check(CLI::Range(1, 10'000))
+      ->capture_default_str();
+  diagram->callback([&] { action = [&] { return run(commands.diagram); }; });
+
+  CLI::App* convert = app.add_subcommand(
+      "convert", "Write a fabric file as knitout for a machine, or knitout as a fabric file");
+  convert->add_option("FILE", commands.convert.file, "Fabric or knitout file")->required();
+  convert->add_option("-o,--out", commands.convert.out, "What to write: .k, .knitout or .verm")
+      ->type_name("OUT")
+      ->required();
+  convert->add_option("--machine", commands.convert.machine, "The make of machine (default: shima)")
+      ->check(CLI::IsMember({"shima", "kniterate"}));
+  convert->add_flag("--bind-off", commands.convert.bind_off, "Bind off instead of dropping the last loops");
+  convert->callback([&] { action = [&] { return run(commands.convert); }; });
 
   CLI::App* build = app.add_subcommand("build", "Write the first geometry, before mechanics");
   build->add_option("FILE", commands.build.file, "Knitout or fabric file")->required();
@@ -104,7 +168,38 @@ void add_commands(CLI::App& app, Commands& commands, Action& action) {
   render->add_option("-o,--out", commands.render.out, "The picture")->type_name("PNG")->required();
   add_piece_options(*render, commands.render.piece);
   add_picture_options(*render, commands.render.picture);
+  render->add_option("--style", commands.render.style, "Yarn, or the loop model's net or sides")
+      ->check(CLI::IsMember({"yarn", "structure", "sides"}))
+      ->capture_default_str();
+  render
+      ->add_option("--moment", commands.render.moment, "Of the loop model: its start, stable state, or both")
+      ->check(CLI::IsMember({"start", "stable", "both"}))
+      ->capture_default_str();
+  add_loop_options(*render, commands.render.loop);
   render->callback([&] { action = [&] { return run(commands.render); }; });
+
+  CLI::App* animate = app.add_subcommand("animate", "Motion of the loop model: pictures and a VTK series");
+  animate->add_option("FILE", commands.animate.file, "Knitout or fabric file")->required();
+  animate->add_option("-o,--out", commands.animate.out, "Folder for the frames")
+      ->type_name("DIR")
+      ->required();
+  animate->add_option("--model", commands.animate.model, "What moves")
+      ->check(CLI::IsMember({"loop"}))
+      ->capture_default_str();
+  animate->add_option("--style", commands.animate.style, "The net with its curves, or front and rear loops")
+      ->check(CLI::IsMember({"structure", "sides"}))
+      ->capture_default_str();
+  animate->add_option("--frames", commands.animate.frames, "Number of frames")
+      ->check(CLI::Range(2, 9999))
+      ->capture_default_str();
+  animate->add_option("--seconds", commands.animate.seconds, "Time shown (default: until nothing moves)")
+      ->check(CLI::PositiveNumber);
+  animate->add_flag("--no-pictures", commands.animate.no_pictures, "VTK files only");
+  animate->add_option("--threads", commands.animate.threads, "Threads to use, 0 for all")
+      ->check(CLI::Range(0, 4096));
+  add_picture_options(*animate, commands.animate.picture);
+  add_loop_options(*animate, commands.animate.loop);
+  animate->callback([&] { action = [&] { return run(commands.animate); }; });
 
   CLI::App* measure = app.add_subcommand("measure", "Measure a saved state");
   measure->add_option("STATE", commands.measure.file, "A saved state")->required();

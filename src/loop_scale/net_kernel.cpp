@@ -1,9 +1,12 @@
 #include "loop_scale/net_kernel.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <memory>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <tuple>
@@ -13,12 +16,25 @@
 namespace loopwright {
 namespace {
 
-constexpr std::size_t chunk = 16384;  // masses a piece of work; fixed, so that sums do not depend on threads
+// Masses a piece of work; fixed, so that sums do not depend on the number of threads. Its forces fit into a
+// core's second cache.
+constexpr std::size_t piece_size = 8192;
+constexpr std::size_t shortest_run = 6;  // on average, for which runs are worth their overhead
+constexpr std::size_t batch = 128;       // springs whose roots are drawn together
 
 std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
-int chunks_of(std::size_t n) { return static_cast<int>((n + chunk - 1) / chunk); }
 
 }  // namespace
+
+// Forces on the masses of one piece, from its first on. One for each thread, made once.
+struct NetKernel::Forces {
+  std::array<double, piece_size> x, y, z;
+
+  static Forces& of_this_thread() {
+    thread_local const std::unique_ptr<Forces> forces = std::make_unique<Forces>();
+    return *forces;
+  }
+};
 
 NetKernel::NetKernel(const MassSpringNet& net)
     : law_(net.law),
@@ -29,54 +45,128 @@ NetKernel::NetKernel(const MassSpringNet& net)
       springs_(net.springs),
       couplings_(net.couplings) {
   require_sound(net);
-  const std::size_t n = net.mass.size();
+  make_classes(net);
+  make_bonds();
+  bound_step(net);
+}
 
-  // masses of one kind share a class
+// Masses of one kind share a class.
+void NetKernel::make_classes(const MassSpringNet& net) {
+  const std::size_t n = net.mass.size();
   std::vector<int> clamp_of(n, -1);
   std::vector<std::vector<int>> loads_of(net.loads.empty() ? 0 : n);
   for (std::size_t c = 0; c < clamps_.size(); ++c)
     for (const std::int32_t i : clamps_[c].masses) clamp_of[at(i)] = static_cast<int>(c);
   for (std::size_t k = 0; k < loads_.size(); ++k)
     for (const std::int32_t i : loads_[k].masses) loads_of[at(i)].push_back(static_cast<int>(k));
-  std::map<std::tuple<double, int, std::vector<int>>, std::int32_t> known_classes;
+  std::map<std::tuple<double, int, std::vector<int>>, std::int32_t> known;
   class_of_.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
-    const MassClass wanted{net.mass[i], clamp_of[i], loads_of.empty() ? std::vector<int>{} : loads_of[i]};
-    const auto [place, is_new] = known_classes.try_emplace({wanted.mass, wanted.clamp, wanted.loads},
-                                                           static_cast<std::int32_t>(classes_.size()));
-    if (is_new) classes_.push_back(wanted);
+    MassClass wanted;
+    wanted.mass = net.mass[i];
+    wanted.clamp = clamp_of[i];
+    if (!loads_of.empty()) wanted.loads = loads_of[i];
+    const auto [place, is_new] = known.try_emplace({wanted.mass, wanted.clamp, wanted.loads},
+                                                   static_cast<std::int32_t>(classes_.size()));
+    if (is_new) classes_.push_back(std::move(wanted));
     class_of_[i] = place->second;
   }
   passes_.resize(classes_.size());
-
-  // every spring twice, once at each end, so that a mass gathers its forces without writing elsewhere
-  first_half_.assign(n + 1, 0);
-  for (const Spring& s : springs_) {
-    ++first_half_[at(s.a) + 1];
-    ++first_half_[at(s.b) + 1];
+  for (std::size_t first = 0; first < n; first += piece_size) {
+    Piece piece;
+    piece.first = first;
+    piece.last = std::min(first + piece_size, n);
+    piece.only_class = class_of_[first];
+    for (std::size_t i = piece.first; i < piece.last; ++i)
+      if (class_of_[i] != piece.only_class) piece.only_class = -1;
+    pieces_.push_back(piece);
   }
-  for (std::size_t i = 0; i < n; ++i) first_half_[i + 1] += first_half_[i];
-  halves_.resize(2 * springs_.size());
-  if (!couplings_.empty()) half_spring_.resize(halves_.size());
+}
+
+void NetKernel::make_bonds() {
   tension_.assign(couplings_.empty() ? 0 : springs_.size(), 0);
-  std::vector<std::int32_t> next(first_half_.begin(), first_half_.end() - 1);
-  std::map<std::tuple<double, double, double, double>, std::int32_t> known_types;
-  for (std::size_t k = 0; k < springs_.size(); ++k) {
-    const Spring& s = springs_[k];
-    for (const bool from_a : {true, false}) {
-      const Vec3 rest = law_ == SpringLaw::vector ? (from_a ? s.rest : -s.rest) : Vec3{norm(s.rest), 0, 0};
-      const auto [place, is_new] = known_types.try_emplace({s.stiffness, rest.x, rest.y, rest.z},
-                                                           static_cast<std::int32_t>(types_.size()));
-      if (is_new) {
-        types_.push_back({s.stiffness, norm(s.rest)});
-        rest_vectors_.push_back(rest);
-      }
-      const auto half = at(next[at(from_a ? s.a : s.b)]++);
-      halves_[half] = {from_a ? s.b : s.a, place->second};
-      if (!couplings_.empty()) half_spring_[half] = static_cast<std::int32_t>(k);
+  std::map<std::tuple<double, double, double, double>, std::int32_t> known;
+  const auto type_of = [&](const Spring& s, bool from_a) {
+    const Vec3 rest = law_ == SpringLaw::vector ? (from_a ? s.rest : -s.rest) : Vec3{norm(s.rest), 0, 0};
+    const auto [place, is_new] =
+        known.try_emplace({s.stiffness, rest.x, rest.y, rest.z}, static_cast<std::int32_t>(types_.size()));
+    if (is_new) {
+      types_.push_back({s.stiffness, norm(s.rest)});
+      rest_vectors_.push_back(rest);
+    }
+    return place->second;
+  };
+  // springs in the order of their first masses, so that neighbours are found in the cache
+  std::vector<std::int32_t> order(springs_.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](std::int32_t l, std::int32_t r) {
+    const Spring &a = springs_[at(l)], &b = springs_[at(r)];
+    return std::min(a.a, a.b) < std::min(b.a, b.b);
+  });
+  struct Work {
+    Bond bond;
+    std::int32_t spring;
+  };
+  std::vector<std::vector<Work>> inner(pieces_.size()), border(pieces_.size());
+  for (const std::int32_t k : order) {
+    const Spring& s = springs_[at(k)];
+    const std::size_t of_a = at(s.a) / piece_size, of_b = at(s.b) / piece_size;
+    if (of_a == of_b) {
+      inner[of_a].push_back({{s.a, s.b, type_of(s, true)}, k});
+    } else {
+      border[of_a].push_back({{s.a, s.b, type_of(s, true)}, k});
+      border[of_b].push_back({{s.b, s.a, type_of(s, false)}, k});
     }
   }
-  bound_step(net);
+  for (std::size_t p = 0; p < pieces_.size(); ++p) {
+    pieces_[p].inner = bonds_.size();
+    pieces_[p].border = bonds_.size() + inner[p].size();
+    for (const std::vector<Work>* list : {&inner[p], &border[p]})
+      for (const Work& work : *list) {
+        bonds_.push_back(work.bond);
+        if (!couplings_.empty()) bond_spring_.push_back(work.spring);
+      }
+    pieces_[p].end = bonds_.size();
+  }
+  // couplings and rest vectors are looked up by bond
+  if (!couplings_.empty() || law_ == SpringLaw::vector) return;
+  for (Piece& piece : pieces_) {
+    piece.inner_runs = runs_.size();
+    piece.border_runs = append_runs(piece.inner, piece.border);
+    piece.end_runs = append_runs(piece.border, piece.end);
+    const std::size_t count = piece.end_runs - piece.inner_runs;
+    if (count * shortest_run > piece.end - piece.inner) {
+      runs_.resize(piece.inner_runs);
+      piece.border_runs = piece.end_runs = piece.inner_runs;
+    }
+  }
+}
+
+// Bonds are ordered by their first masses, so runs of different types lie in turns: as many open runs as
+// types.
+std::size_t NetKernel::append_runs(std::size_t begin, std::size_t end) {
+  std::map<std::pair<std::int32_t, std::int32_t>, std::size_t> open;  // by type and a's next value
+  for (std::size_t k = begin; k < end; ++k) {
+    const Bond& bond = bonds_[k];
+    const auto found = open.find({bond.type, bond.a});
+    bool joined = false;
+    if (found != open.end()) {
+      Run& run = runs_[found->second];
+      const std::int32_t forward = run.b + run.count, backward = run.b - run.count;
+      if (run.count == 1) run.backward = bond.b == backward;
+      if (bond.b == (run.backward ? backward : forward)) {
+        const std::size_t which = found->second;
+        ++run.count;
+        open.erase(found);
+        open[{bond.type, bond.a + 1}] = which;
+        joined = true;
+      }
+    }
+    if (joined) continue;
+    open[{bond.type, bond.a + 1}] = runs_.size();
+    runs_.push_back({bond.a, bond.b, 1, bond.type, false});
+  }
+  return runs_.size();
 }
 
 void NetKernel::bound_step(const MassSpringNet& net) {
@@ -98,85 +188,6 @@ void NetKernel::bound_step(const MassSpringNet& net) {
   }
   const double most = row.empty() ? 0 : *std::max_element(row.begin(), row.end());
   stable_step_ = most > 0 ? 2 / std::sqrt(most) : std::numeric_limits<double>::infinity();
-}
-
-namespace {
-
-// The sum of spring forces on mass i; three kinds, so that the common one carries nothing of the others.
-template <class Half, class Type>
-struct AlongSprings {
-  const double *x, *y, *z;
-  const std::int32_t* first;
-  const Half* halves;
-  const Type* types;
-
-  Vec3 operator()(std::size_t i) const {
-    const double xi = x[i], yi = y[i], zi = z[i];
-    Vec3 force;
-    for (std::int32_t k = first[i]; k < first[i + 1]; ++k) {
-      const Half half = halves[k];
-      const Type type = types[half.type];
-      const double dx = x[half.neighbour] - xi, dy = y[half.neighbour] - yi, dz = z[half.neighbour] - zi;
-      const double square = dx * dx + dy * dy + dz * dz;
-      // two masses at one place: no direction, no force
-      const double length = std::sqrt(std::max(square, std::numeric_limits<double>::min()));
-      const double share = type.stiffness * (1 - type.rest / length);
-      force.x += share * dx;
-      force.y += share * dy;
-      force.z += share * dz;
-    }
-    return force;
-  }
-};
-
-template <class Half, class Type>
-struct CoupledSprings {
-  AlongSprings<Half, Type> plain;
-  const std::int32_t* spring;
-  const double* tension;
-
-  Vec3 operator()(std::size_t i) const {
-    Vec3 force = plain(i);
-    for (std::int32_t k = plain.first[i]; k < plain.first[i + 1]; ++k) {
-      const std::int32_t j = plain.halves[k].neighbour;
-      const Vec3 d{plain.x[j] - plain.x[i], plain.y[j] - plain.y[i], plain.z[j] - plain.z[i]};
-      force += d * (tension[spring[k]] / std::max(norm(d), std::numeric_limits<double>::min()));
-    }
-    return force;
-  }
-};
-
-template <class Half, class Type>
-struct VectorSprings {
-  AlongSprings<Half, Type> plain;
-  const Vec3* rest;
-
-  Vec3 operator()(std::size_t i) const {
-    Vec3 force;
-    for (std::int32_t k = plain.first[i]; k < plain.first[i + 1]; ++k) {
-      const Half half = plain.halves[k];
-      const Vec3 d{plain.x[half.neighbour] - plain.x[i], plain.y[half.neighbour] - plain.y[i],
-                   plain.z[half.neighbour] - plain.z[i]};
-      force += (d - rest[half.type]) * plain.types[half.type].stiffness;
-    }
-    return force;
-  }
-};
-
-}  // namespace
-
-template <class Use>
-void NetKernel::with_springs(const NetState& state, const Use& use) const {
-  const AlongSprings<HalfSpring, SpringType> plain{state.x.data(),     state.y.data(), state.z.data(),
-                                                   first_half_.data(), halves_.data(), types_.data()};
-  if (law_ == SpringLaw::vector) {
-    use(VectorSprings<HalfSpring, SpringType>{plain, rest_vectors_.data()});
-  } else if (!couplings_.empty()) {
-    couple(state);
-    use(CoupledSprings<HalfSpring, SpringType>{plain, half_spring_.data(), tension_.data()});
-  } else {
-    use(plain);
-  }
 }
 
 // Tension that couplings add to their springs, added up in their order.
@@ -209,45 +220,165 @@ void NetKernel::set_passes(double time, double h, Moment moment) {
   }
 }
 
-template <class Springs>
-void NetKernel::sweep_chunk(const Springs& springs, NetState& state, double half, double h, std::size_t first,
-                            std::size_t last) {
-  // the state's velocities are W here; they are written where they were read
-  double* const vx = state.vx.data();
-  double* const vy = state.vy.data();
-  double* const vz = state.vz.data();
-  for (std::size_t i = first; i < last; ++i) {
-    const Pass& pass = passes_[at(class_of_[i])];
-    Vec3 w;
-    if (pass.clamped) {
-      w = pass.velocity;
-    } else {
-      const Vec3 a = springs(i) * pass.inverse_mass + pass.acceleration;
-      w = Vec3{vx[i], vy[i], vz[i]} * pass.keep + a * (pass.gain * half);
+// Forces of bonds [begin, end), on both ends or on the first alone.
+void NetKernel::add_bonds(const Piece& piece, std::size_t begin, std::size_t end, bool both,
+                          const NetState& state, Forces& forces) const {
+  const double *const x = state.x.data(), *const y = state.y.data(), *const z = state.z.data();
+  std::array<double, batch> dx, dy, dz, stiffness, rest, share;
+  for (std::size_t k = begin; k < end; k += batch) {
+    const std::size_t count = std::min(batch, end - k);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Bond bond = bonds_[k + i];
+      dx[i] = x[bond.b] - x[bond.a];
+      dy[i] = y[bond.b] - y[bond.a];
+      dz[i] = z[bond.b] - z[bond.a];
+      stiffness[i] = types_[at(bond.type)].stiffness;
+      rest[i] = types_[at(bond.type)].rest;
     }
-    vx[i] = w.x;
-    vy[i] = w.y;
-    vz[i] = w.z;
-    nx_[i] = state.x[i] + h * w.x;
-    ny_[i] = state.y[i] + h * w.y;
-    nz_[i] = state.z[i] + h * w.z;
+    if (law_ == SpringLaw::vector) {
+      for (std::size_t i = 0; i < count; ++i) {
+        const Vec3& unloaded = rest_vectors_[at(bonds_[k + i].type)];
+        dx[i] -= unloaded.x;
+        dy[i] -= unloaded.y;
+        dz[i] -= unloaded.z;
+        share[i] = stiffness[i];
+      }
+    } else {
+      // two masses at one place: no direction, no force
+      constexpr double least = std::numeric_limits<double>::min();
+      for (std::size_t i = 0; i < count; ++i) {
+        const double square = dx[i] * dx[i] + dy[i] * dy[i] + dz[i] * dz[i];
+        share[i] = stiffness[i] - stiffness[i] * rest[i] / std::sqrt(square > least ? square : least);
+      }
+      if (!couplings_.empty())
+        for (std::size_t i = 0; i < count; ++i) {
+          const double length = norm({dx[i], dy[i], dz[i]});
+          share[i] += tension_[at(bond_spring_[k + i])] / std::max(length, least);
+        }
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      const double fx = share[i] * dx[i], fy = share[i] * dy[i], fz = share[i] * dz[i];
+      const std::size_t a = at(bonds_[k + i].a) - piece.first;
+      forces.x[a] += fx;
+      forces.y[a] += fy;
+      forces.z[a] += fz;
+      if (!both) continue;
+      const std::size_t b = at(bonds_[k + i].b) - piece.first;
+      forces.x[b] -= fx;
+      forces.y[b] -= fy;
+      forces.z[b] -= fz;
+    }
+  }
+}
+
+namespace {
+
+// Differences, and later forces, of springs a + i to b + i or b - i.
+template <bool backward>
+void differences(const double* a, const double* b, std::size_t count, double* d) {
+  for (std::size_t i = 0; i < count; ++i)
+    d[i] = *(backward ? b - static_cast<std::ptrdiff_t>(i) : b + static_cast<std::ptrdiff_t>(i)) - a[i];
+}
+template <bool backward>
+void take_away(const double* share, const double* d, std::size_t count, double* b) {
+  for (std::size_t i = 0; i < count; ++i)
+    *(backward ? b - static_cast<std::ptrdiff_t>(i) : b + static_cast<std::ptrdiff_t>(i)) -= share[i] * d[i];
+}
+
+}  // namespace
+
+void NetKernel::add_run(const Piece& piece, const Run& run, bool both, const NetState& state,
+                        Forces& forces) const {
+  const double stiffness = types_[at(run.type)].stiffness, pull = stiffness * types_[at(run.type)].rest;
+  std::array<std::array<double, batch>, 3> d;
+  std::array<double, batch> share;
+  const std::array<const double*, 3> place{state.x.data(), state.y.data(), state.z.data()};
+  const std::array<double*, 3> force{forces.x.data(), forces.y.data(), forces.z.data()};
+  for (std::size_t k = 0; k < at(run.count); k += batch) {
+    const std::size_t count = std::min(batch, at(run.count) - k), a = at(run.a) + k;
+    const std::size_t b = run.backward ? at(run.b) - k : at(run.b) + k;
+    for (std::size_t c = 0; c < 3; ++c)
+      run.backward ? differences<true>(place[c] + a, place[c] + b, count, d[c].data())
+                   : differences<false>(place[c] + a, place[c] + b, count, d[c].data());
+    constexpr double least = std::numeric_limits<double>::min();
+    for (std::size_t i = 0; i < count; ++i) {
+      const double square = d[0][i] * d[0][i] + d[1][i] * d[1][i] + d[2][i] * d[2][i];
+      share[i] = stiffness - pull / std::sqrt(square > least ? square : least);
+    }
+    for (std::size_t c = 0; c < 3; ++c) {
+      double* const fa = force[c] + (a - piece.first);
+      for (std::size_t i = 0; i < count; ++i) fa[i] += share[i] * d[c][i];
+      if (!both) continue;
+      double* const fb = force[c] + (b - piece.first);
+      run.backward ? take_away<true>(share.data(), d[c].data(), count, fb)
+                   : take_away<false>(share.data(), d[c].data(), count, fb);
+    }
+  }
+}
+
+void NetKernel::add_forces(const Piece& piece, const NetState& state, Forces& forces) const {
+  const std::size_t count = piece.last - piece.first;
+  for (auto* each : {&forces.x, &forces.y, &forces.z}) std::fill_n(each->begin(), count, 0.0);
+  if (piece.inner_runs < piece.end_runs) {
+    for (std::size_t r = piece.inner_runs; r < piece.end_runs; ++r)
+      add_run(piece, runs_[r], r < piece.border_runs, state, forces);
+    return;
+  }
+  add_bonds(piece, piece.inner, piece.border, true, state, forces);
+  add_bonds(piece, piece.border, piece.end, false, state, forces);
+}
+
+// The state's velocities are W here; they are written where they were read.
+void NetKernel::move(const Piece& piece, const Forces& forces, NetState& state, double half, double h) {
+  const auto along = [&](const Pass& pass, double force, double load, double x, double& v, double& next) {
+    v = v * pass.keep + (force * pass.inverse_mass + load) * (pass.gain * half);
+    next = x + h * v;
+  };
+  if (piece.only_class >= 0 && !passes_[at(piece.only_class)].clamped) {
+    // a loop for each axis, which the compiler turns into vectors
+    const Pass pass = passes_[at(piece.only_class)];
+    const std::size_t count = piece.last - piece.first;
+    const auto axis = [&](const std::array<double, piece_size>& force, double load, const double* x,
+                          double* v, double* next) {
+      for (std::size_t i = 0; i < count; ++i) along(pass, force[i], load, x[i], v[i], next[i]);
+    };
+    const std::size_t f = piece.first;
+    axis(forces.x, pass.acceleration.x, state.x.data() + f, state.vx.data() + f, nx_.data() + f);
+    axis(forces.y, pass.acceleration.y, state.y.data() + f, state.vy.data() + f, ny_.data() + f);
+    axis(forces.z, pass.acceleration.z, state.z.data() + f, state.vz.data() + f, nz_.data() + f);
+    return;
+  }
+  for (std::size_t i = piece.first; i < piece.last; ++i) {
+    const Pass& pass = passes_[at(class_of_[i])];
+    const std::size_t f = i - piece.first;
+    if (pass.clamped) {
+      state.vx[i] = pass.velocity.x;
+      state.vy[i] = pass.velocity.y;
+      state.vz[i] = pass.velocity.z;
+      nx_[i] = state.x[i] + h * pass.velocity.x;
+      ny_[i] = state.y[i] + h * pass.velocity.y;
+      nz_[i] = state.z[i] + h * pass.velocity.z;
+      continue;
+    }
+    along(pass, forces.x[f], pass.acceleration.x, state.x[i], state.vx[i], nx_[i]);
+    along(pass, forces.y[f], pass.acceleration.y, state.y[i], state.vy[i], ny_[i]);
+    along(pass, forces.z[f], pass.acceleration.z, state.z[i], state.vz[i], nz_[i]);
   }
 }
 
 void NetKernel::sweep(NetState& state, double half, double h) {
-  with_springs(state, [&]<class Springs>(const Springs& springs) {
-    struct Work {
-      NetKernel* kernel;
-      const Springs* sums;
-      NetState* state;
-      double half, h;
-    } work{this, &springs, &state, half, h};
-    const Work* w = &work;  // one pointer: handing out the work does not allocate
-    parallel_chunks(chunks_of(masses()), [w](int c) {
-      const std::size_t first = static_cast<std::size_t>(c) * chunk;
-      w->kernel->sweep_chunk(*w->sums, *w->state, w->half, w->h, first,
-                             std::min(first + chunk, w->kernel->masses()));
-    });
+  couple(state);
+  struct Work {
+    NetKernel* kernel;
+    NetState* state;
+    double half, h;
+  } work{this, &state, half, h};
+  const Work* w = &work;  // one pointer: handing out the work does not allocate
+  parallel_chunks(static_cast<int>(pieces_.size()), [w](int p) {
+    const Piece& piece = w->kernel->pieces_[static_cast<std::size_t>(p)];
+    Forces& forces = Forces::of_this_thread();
+    w->kernel->add_forces(piece, *w->state, forces);
+    w->kernel->move(piece, forces, *w->state, w->half, w->h);
   });
 }
 
@@ -272,11 +403,15 @@ void NetKernel::advance(NetState& state, double h, int steps) {
 
 void NetKernel::spring_forces(const NetState& state, std::vector<Vec3>& out) const {
   out.resize(masses());
-  with_springs(state, [&](const auto& springs) {
-    parallel_chunks(chunks_of(masses()), [&](int c) {
-      const std::size_t first = static_cast<std::size_t>(c) * chunk;
-      for (std::size_t i = first; i < std::min(first + chunk, masses()); ++i) out[i] = springs(i);
-    });
+  couple(state);
+  parallel_chunks(static_cast<int>(pieces_.size()), [&](int p) {
+    const Piece& piece = pieces_[static_cast<std::size_t>(p)];
+    Forces& forces = Forces::of_this_thread();
+    add_forces(piece, state, forces);
+    for (std::size_t i = piece.first; i < piece.last; ++i) {
+      const std::size_t f = i - piece.first;
+      out[i] = {forces.x[f], forces.y[f], forces.z[f]};
+    }
   });
 }
 
@@ -316,10 +451,14 @@ NetEnergy NetKernel::energy(const NetState& state) const {
 }
 
 double NetKernel::bytes_per_mass() const {
-  const double halves =
-      static_cast<double>(halves_.size()) / static_cast<double>(std::max<std::size_t>(masses(), 1));
-  // x read, x written, v read, v written; a class, a first index, and the list of neighbours
-  return 4 * 3 * sizeof(double) + 2 * sizeof(std::int32_t) + halves * sizeof(HalfSpring);
+  double list = static_cast<double>(runs_.size() * sizeof(Run));
+  for (const Piece& p : pieces_)
+    if (p.inner_runs == p.end_runs) list += static_cast<double>((p.end - p.inner) * sizeof(Bond));
+  const bool classes =
+      std::any_of(pieces_.begin(), pieces_.end(), [](const Piece& p) { return p.only_class < 0; });
+  // x read, x written, v read, v written; the list of springs; the classes where they differ
+  return 4 * 3 * sizeof(double) + list / static_cast<double>(std::max<std::size_t>(masses(), 1)) +
+         (classes ? sizeof(std::int32_t) : 0);
 }
 
 }  // namespace loopwright

@@ -66,23 +66,43 @@ class NetKernel {
     Vec3 acceleration, velocity;  // of loads and gravity; of a clamp
     bool clamped = false;
   };
-  struct HalfSpring {
-    std::int32_t neighbour, type;
+  // A spring as a piece of work sees it: F on `a`, and -F on `b` if that is of the same piece.
+  struct Bond {
+    std::int32_t a, b, type;
+  };
+  // Springs of one type from a + i to b + i (or b - i), i < count: a course of loops, and all its warp
+  // springs. Needs no list to be read, and the compiler turns it into vectors.
+  struct Run {
+    std::int32_t a, b, count, type;
+    bool backward;  // b - i
   };
   struct SpringType {
     double stiffness, rest;
   };
+  // Masses [first, last): bonds [inner, border) have both ends there, [border, end) the first alone. Springs
+  // between two pieces are worked out by both, so that no piece writes to another.
+  struct Piece {
+    std::size_t first = 0, last = 0;
+    std::size_t inner = 0, border = 0, end = 0;
+    // The same as runs, if they are long enough; else none.
+    std::size_t inner_runs = 0, border_runs = 0, end_runs = 0;
+    std::int32_t only_class = -1;  // of all its masses, if they have one
+  };
   enum class Moment : std::uint8_t { first, inner, last };
+  struct Forces;
 
   std::size_t class_index(std::size_t mass) const { return static_cast<std::size_t>(class_of_[mass]); }
+  void make_classes(const MassSpringNet& net);
+  void make_bonds();
   void set_passes(double time, double h, Moment moment);
   void sweep(NetState& state, double half, double h);
-  template <class Springs>
-  void sweep_chunk(const Springs& springs, NetState& state, double half, double h, std::size_t first,
-                   std::size_t last);
   void couple(const NetState& state) const;
-  template <class Use>
-  void with_springs(const NetState& state, const Use& use) const;
+  void add_forces(const Piece& piece, const NetState& state, Forces& forces) const;
+  std::size_t append_runs(std::size_t begin, std::size_t end);
+  void add_run(const Piece& piece, const Run& run, bool both, const NetState& state, Forces& forces) const;
+  void add_bonds(const Piece& piece, std::size_t begin, std::size_t end, bool both, const NetState& state,
+                 Forces& forces) const;
+  void move(const Piece& piece, const Forces& forces, NetState& state, double half, double h);
   void bound_step(const MassSpringNet& net);
 
   SpringLaw law_;
@@ -93,15 +113,16 @@ class NetKernel {
   std::vector<Spring> springs_;
   std::vector<YarnCoupling> couplings_;
   std::vector<MassClass> classes_;
-  std::vector<std::int32_t> class_of_;     // [mass]
-  std::vector<std::int32_t> first_half_;   // [mass + 1]
-  std::vector<HalfSpring> halves_;         // by mass
-  std::vector<SpringType> types_;          // law along
-  std::vector<Vec3> rest_vectors_;         // law vector, by type, from the mass to its neighbour
-  std::vector<std::int32_t> half_spring_;  // [half] its spring, only with couplings
+  std::vector<std::int32_t> class_of_;  // [mass]
+  std::vector<Piece> pieces_;
+  std::vector<Bond> bonds_;  // by piece
+  std::vector<Run> runs_;    // by piece
+  std::vector<SpringType> types_;
+  std::vector<Vec3> rest_vectors_;         // [type], law vector, from a to b
+  std::vector<std::int32_t> bond_spring_;  // [bond] its spring, only with couplings
   mutable std::vector<double> tension_;    // [spring] by couplings
-  std::vector<Pass> passes_;
-  std::vector<double> nx_, ny_, nz_;  // positions after the step
+  std::vector<Pass> passes_;               // [class]
+  std::vector<double> nx_, ny_, nz_;       // positions after the step
 };
 
 }  // namespace loopwright

@@ -24,6 +24,7 @@ class CrossingTracker {
   CrossingTracker(const NeedleTable& needles, const std::vector<std::vector<LoopId>>& stacks)
       : needles_(needles), stacks_(stacks) {}
 
+  void reserve(std::size_t loops) { arrived_.reserve(loops); }
   void rack(const Racking& racking);
   void arrive(LoopId loop);                                 // a loop came onto a needle, formed or moved
   void leave(LoopId loop, Needle needle, int instruction);  // it is about to leave; stacks still as they were

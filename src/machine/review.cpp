@@ -219,7 +219,8 @@ void Reviewer::caught_yarns() {
 }
 
 void Reviewer::twisted_tucks() {
-  const auto twisted = [](const LoopRecord& each) { return each.twisted; };
+  // on an empty needle a twisted loop is a good cast-on
+  const auto twisted = [](const LoopRecord& each) { return each.twisted && !each.on_empty_needle; };
   const auto first = std::find_if(record_.loops.begin(), record_.loops.end(), twisted);
   if (first == record_.loops.end()) return;
   const auto count = std::count_if(first, record_.loops.end(), twisted);

@@ -28,6 +28,7 @@ class Machine {
   KnittingRecord run();
 
  private:
+  void make_room();
   void rack(const Instruction& instruction);
   void form_loops(const Instruction& instruction);
   void miss(const Instruction& instruction);
@@ -75,7 +76,20 @@ Direction direction_of(const Instruction& instruction) {
   return instruction.direction == Direction::left ? Direction::left : Direction::right;
 }
 
+// Room for all loops at once: a long programme would else copy them again and again.
+void Machine::make_room() {
+  std::size_t loops = 0;
+  for (const Instruction& instruction : program_.instructions)
+    if (instruction.op == Op::knit || instruction.op == Op::tuck || instruction.op == Op::split)
+      loops += instruction.carriers.size();
+  record_.loops.reserve(loops);
+  crossings_.reserve(loops);
+  record_.stack_rank.reserve(loops);
+  record_.stack_height.reserve(loops);
+}
+
 KnittingRecord Machine::run() {
+  make_room();
   for (const Instruction& instruction : program_.instructions) {
     const bool has_yarn = !instruction.carriers.empty();
     switch (instruction.op) {
@@ -366,6 +380,7 @@ void Machine::count_caught_yarns(const Instruction& instruction, const std::vect
     const long long here = 2 * racking_.order(instruction.needle);
     const long long begin = 2 * racking_.order(loop(last).last().needle);
     const long long end = 2 * racking_.order(*carrier.at) + static_cast<int>(carrier.side);
+    if (std::abs(end - begin) <= 4 * most_needles_passed) continue;
     if (std::min(begin, end) >= here || here >= std::max(begin, end)) continue;
     if (record_.caught_yarns.count == 0) record_.caught_yarns.carrier = id;
     count(record_.caught_yarns, instruction.needle);

@@ -8,6 +8,8 @@ namespace loopwright {
 
 // From here on a stack is told by review(). Machines take more, spacer fabrics reach 9.
 inline constexpr int most_loops_on_needle = 4;
+// A yarn that has gone past no more needles than these, as at the edge of a jacquard, is not caught there.
+inline constexpr int most_needles_passed = 4;
 // To the right of where the yarn inserting hook is parked.
 inline constexpr int needles_behind_hook = 5;
 

@@ -46,18 +46,30 @@ bool read_bytes(const std::filesystem::path& file, std::string& bytes, Diagnosti
   return true;
 }
 
+bool names_fabric(std::string_view text) {
+  return text.substr(text.starts_with("\xef\xbb\xbf") ? 3 : 0).starts_with(";!vermiculation");
+}
+bool names_knitout(std::string_view text) {
+  return text.substr(text.starts_with("\xef\xbb\xbf") ? 3 : 0).starts_with(";!knitout");
+}
+
 }  // namespace
+
+std::optional<std::string> read_text(const std::filesystem::path& file, Diagnostics& diagnostics) {
+  std::string bytes;
+  if (!read_bytes(file, bytes, diagnostics)) return std::nullopt;
+  return bytes;
+}
+
+bool is_fabric_text(std::string_view text, std::string_view suffix) {
+  return names_fabric(text) || (!names_knitout(text) && lower_case(suffix) == ".verm");
+}
 
 Program read_program_text(std::string_view text, std::string_view suffix, Diagnostics& diagnostics,
                           const FabricOptions& options) {
-  const std::string_view start = text.substr(text.starts_with("\xef\xbb\xbf") ? 3 : 0);
-  const bool is_vermiculation = start.starts_with(";!vermiculation");
-  const bool is_knitout = start.starts_with(";!knitout");
-  if (is_vermiculation || (!is_knitout && lower_case(suffix) == ".verm")) {
-    return read_vermiculation(text, diagnostics, options);
-  }
+  if (is_fabric_text(text, suffix)) return read_vermiculation(text, diagnostics, options);
   const bool knitout_suffix = lower_case(suffix) == ".k" || lower_case(suffix) == ".knitout";
-  if (!is_knitout && !knitout_suffix) {
+  if (!names_knitout(text) && !knitout_suffix) {
     diagnostics.error(
         {1, 1},
         "neither a fabric file nor a knitout file: the first line is neither ';!vermiculation-1' nor "
@@ -71,11 +83,9 @@ Program read_program_text(std::string_view text, std::string_view suffix, Diagno
 
 Program read_program(const std::filesystem::path& file, Diagnostics& diagnostics,
                      const FabricOptions& options) {
-  std::string bytes;
   Program program;
-  if (read_bytes(file, bytes, diagnostics)) {
-    program = read_program_text(bytes, file.extension().string(), diagnostics, options);
-  }
+  if (const auto text = read_text(file, diagnostics))
+    program = read_program_text(*text, file.extension().string(), diagnostics, options);
   program.file = file.string();
   return program;
 }

@@ -23,9 +23,10 @@ Gaze gaze_of(View view) {
     case View::top:
       return {{0, 1, 0}, {0, 0, -1}, 0};
     case View::corner:
+    case View::left_corner:
       break;
   }
-  const Vec3 backward = normalized({0.5, 0.42, 1});
+  const Vec3 backward = normalized({view == View::corner ? 0.5 : -0.5, 0.42, 1});
   const Vec3 up{0, 1, 0};
   return {backward, normalized(up - backward * dot(up, backward)), 18};
 }
@@ -53,6 +54,7 @@ std::optional<View> view_named(std::string_view name) {
   if (name == "left") return View::left;
   if (name == "top") return View::top;
   if (name == "corner") return View::corner;
+  if (name == "left-corner") return View::left_corner;
   return std::nullopt;
 }
 

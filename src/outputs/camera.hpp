@@ -22,8 +22,8 @@ struct Bounds {
 };
 
 // front: from +z, wales upward; back: from -z, so left and right are swapped; left: from -x; top: from +y, +z
-// down; corner: from the right, above and in front.
-enum class View { front, back, left, top, corner };
+// down; corner: from the right, above and in front; left_corner: the same from the left.
+enum class View { front, back, left, top, corner, left_corner };
 std::optional<View> view_named(std::string_view name);
 
 // `height` is what the picture's height shows at the target, in d, for both kinds of projection, so that

@@ -82,6 +82,10 @@ YarnGraph build_yarn_graph(const Program& program, const KnittingRecord& record,
   for (const YarnRecord& yarn : record.yarns) {
     GraphYarn& to = graph.yarns.emplace_back();
     to.carrier = yarn.carrier;
+    const auto formed = std::count_if(yarn.steps.begin(), yarn.steps.end(),
+                                      [](const YarnStep& step) { return step.loop.valid(); });
+    to.loops.reserve(static_cast<std::size_t>(formed));
+    to.floats.reserve(static_cast<std::size_t>(formed));
     for (const YarnStep& step : yarn.steps) {
       if (!step.loop.valid()) continue;
       graph.loops[step.loop.position()].order = static_cast<int>(to.loops.size());
@@ -89,6 +93,9 @@ YarnGraph build_yarn_graph(const Program& program, const KnittingRecord& record,
     }
   }
 
+  std::size_t drawn = 0;
+  for (const Loop& loop : graph.loops) drawn += loop.parents.size();
+  graph.interlacings.reserve(drawn);
   // Who is drawn through whom. A loop formed on the front bed is drawn from back to front.
   for (std::size_t k = 0; k < graph.loops.size(); ++k) {
     for (LoopId parent : graph.loops[k].parents) {

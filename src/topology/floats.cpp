@@ -32,7 +32,7 @@ struct OpenFloat {
 class FloatTracer {
  public:
   FloatTracer(const Program& program, const KnittingRecord& record, YarnGraph& graph)
-      : record_(record), graph_(graph), replay_(program, record), open_(record.yarns.size()) {}
+      : graph_(graph), replay_(program, record), open_(record.yarns.size()) {}
 
   void trace_step(YarnId yarn, const YarnStep& step, const YarnStep* before);
 
@@ -40,7 +40,6 @@ class FloatTracer {
   void pass_between(OpenFloat& open, Place from, Place to);
   void close(YarnId yarn, OpenFloat& open, LoopId to, Place at);
 
-  const KnittingRecord& record_;
   YarnGraph& graph_;
   NeedleReplay replay_;
   std::vector<OpenFloat> open_;  // by yarn

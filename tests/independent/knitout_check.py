@@ -7,21 +7,26 @@ prints a JSON list with one object per file:
 
     file            the path as given
     accepted        true when there is no error
-    errors          [[line, message], ...] in file order; line 0 stands for the end of the file
+    errors          [[line, message], ...] in the order found; a carrier that is left in is told at the line that
+                    brought it in
     warnings        the same shape; they never make a file rejected
     loops_at_end    {needle: [[carrier, line of the operation that made the loop], ...]} in stack order
     stack_heights   {needle: loops on it at the end}; empty needles are left out
     most_stack      the highest stack that any needle held after any operation
-    carriers        {carrier: {"position": needle and side or null, "active": bool}}
+    carriers        {carrier: {"position": needle and side or null, "active": bool, "last_used_at": ...}}
+                    last_used_at: its position just after its last use, before transfers took it along
     counts          operations by meaning: knit, tuck, xfer, split, drop, miss
     loops_made      loops formed, one for each yarn of each knit, tuck or split
 
 and, with --history, what a programme that binds off and takes its carriers out no longer shows at the end:
 
-    drawn           [[line, needle, [loops the stitch was drawn through, in stack order]], ...]
-    dropped         [[line, needle, [loops let go, in stack order]], ...]
-    moved           [[line, from, to, [loops that moved, in the order they lay on the first needle]], ...]
-    carrier_moves   [[line, carrier, position], ...] every change of a logical position but by `out`
+    loops           one line of words for each loop, in the order formed: its carrier and line; every needle it
+                    came onto, with the line, as f3@40; the word `through` and the places in this list of the
+                    loops it was drawn through, in stack order, if there were any; and its end, cast_off@60 (by
+                    a knit), dropped@60 or held
+    uses            one line of words for each carrier of each knit, tuck, split and miss: the line, the carrier,
+                    the needle it was beside just before (`in` on the first use after it was brought in) and its
+                    position after
 
 Conventions
 -----------
@@ -57,12 +62,12 @@ import json
 import math
 import re
 import sys
+from functools import lru_cache
 
-BLANKS = re.compile(r"[ \t]+")
-MAGIC = re.compile(r"^;!knitout-(\d+)$")
+MAGIC = re.compile(r"^;!knitout-([0-9]+)$")
 HEADER = re.compile(r"^;;([^:]*): (.*)$")
 NEEDLE = re.compile(r"^([fb]s?)(-?[0-9]+)$")
-NUMBER = re.compile(r"^[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?$")
+NUMBER = re.compile(r"^[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?$")
 KNOWN_HEADERS = {"Carriers", "Machine", "Gauge", "Position", "Width", "Presser"}
 NEWEST_VERSION = 2
 
@@ -80,16 +85,18 @@ class Machine:
         self.warnings = []
         self.declared = None  # names of the Carriers header, None when it is missing
         self.racking = 0.0
-        self.stacks = {}  # needle -> list of (carrier, line), only needles that hold something
+        self.stacks = {}  # needle -> places in `loops`, only needles that hold something
+        self.loops = []  # [carrier, line, words of its path, words of its parents, end]
+        self.uses = []
         self.waiting = {}  # carrier -> the set it was brought in with
         self.active = set()
+        self.brought_at = {}  # carrier -> line of the `in` or `inhook`, or of a first use without one
         self.positions = {}  # carrier -> (needle, side), kept after `out`
+        self.last_used_at = {}  # the same, as it was just after its last use
         self.hook = None  # the set that the yarn inserting hook holds
         self.hook_used = False
         self.most_stack = 0
-        self.loops_made = 0
         self.counts = dict.fromkeys(("knit", "tuck", "xfer", "split", "drop", "miss"), 0)
-        self.drawn, self.dropped, self.moved, self.carrier_moves = [], [], [], []
 
     # --- reports ---------------------------------------------------------------------------------------------
     def error(self, message):
@@ -106,6 +113,7 @@ class Machine:
         return word
 
     @staticmethod
+    @lru_cache(maxsize=None)
     def needle(word):
         match = NEEDLE.match(word)
         if not match:
@@ -113,6 +121,7 @@ class Machine:
         return match.group(1), int(match.group(2))
 
     @staticmethod
+    @lru_cache(maxsize=None)
     def number(word):
         if not NUMBER.match(word) or not math.isfinite(float(word)):
             raise Refused(f"'{word}' is not a number")
@@ -135,11 +144,6 @@ class Machine:
             stack.extend(loops)
             self.most_stack = max(self.most_stack, len(stack))
 
-    def move_carrier(self, carrier, needle, side):
-        if self.positions.get(carrier) != (needle, side):
-            self.carrier_moves.append([self.line, carrier, place((needle, side))])
-        self.positions[carrier] = (needle, side)
-
     def use(self, carriers):
         """Carriers that are about to work: what was waiting comes in."""
         for carrier in carriers:
@@ -151,17 +155,28 @@ class Machine:
                     self.hook_used = True
             elif carrier not in self.active:
                 self.error(f"carrier {carrier} is not in")
+                self.brought_at[carrier] = self.line
+        self.beside = [place(self.positions[c])[:-1] if c in self.active else "in" for c in carriers]
         for carrier in carriers:
             self.waiting.pop(carrier, None)
             self.active.add(carrier)
 
     def set_positions(self, carriers, needle, side):
-        for carrier in carriers:
-            self.move_carrier(carrier, needle, side)
+        for carrier, beside in zip(carriers, self.beside):
+            self.positions[carrier] = self.last_used_at[carrier] = (needle, side)
+            self.uses.append(f"{self.line} {carrier} {beside} {name(needle)}{side}")
 
-    def make_loops(self, needle, carriers):
-        self.loops_made += len(carriers)
-        self.put(needle, [(carrier, self.line) for carrier in carriers])
+    def make_loops(self, needle, carriers, parents):
+        first = len(self.loops)
+        path = f"{name(needle)}@{self.line}"
+        through = f" through {' '.join(map(str, parents))}" if parents else ""
+        for carrier in carriers:
+            self.loops.append([carrier, self.line, path, through, "held"])
+        self.put(needle, list(range(first, len(self.loops))))
+
+    def end(self, loops, fate):
+        for loop in loops:
+            self.loops[loop][4] = f"{fate}@{self.line}"
 
     def require_hook_needle(self, needle):
         if needle[0].endswith("s"):
@@ -170,12 +185,12 @@ class Machine:
     def pass_over(self, source, target, carriers):
         """The loops of `source` and the carriers beside it, other than `carriers`, go to `target`."""
         loops = self.stacks.pop(source, [])
-        if loops:
-            self.moved.append([self.line, name(source), name(target), [list(loop) for loop in loops]])
+        for loop in loops:
+            self.loops[loop][2] += f" {name(target)}@{self.line}"
         self.put(target, loops[::-1])
-        for carrier in sorted(self.active):
+        for carrier in self.active:
             if carrier not in carriers and self.positions[carrier][0] == source:
-                self.move_carrier(carrier, target, self.positions[carrier][1])
+                self.positions[carrier] = (target, self.positions[carrier][1])
 
     def require_facing(self, source, target):
         if source[0][0] == target[0][0]:
@@ -194,9 +209,8 @@ class Machine:
         self.require_hook_needle(needle)
         self.use(carriers)
         through = self.stacks.pop(needle, [])
-        if through:
-            self.drawn.append([self.line, name(needle), [list(loop) for loop in through]])
-        self.make_loops(needle, carriers)
+        self.end(through, "cast_off")
+        self.make_loops(needle, carriers, through)
         self.set_positions(carriers, needle, side)
         self.counts["knit"] += 1
 
@@ -206,7 +220,7 @@ class Machine:
             return  # amiss
         self.require_hook_needle(needle)
         self.use(carriers)
-        self.make_loops(needle, carriers)
+        self.make_loops(needle, carriers, [])
         self.set_positions(carriers, needle, side)
         self.counts["tuck"] += 1
 
@@ -219,10 +233,8 @@ class Machine:
         self.require_hook_needle(source)
         self.use(carriers)
         through = self.stacks.get(source, [])
-        if through:
-            self.drawn.append([self.line, name(source), [list(loop) for loop in through]])
         self.pass_over(source, target, carriers)
-        self.make_loops(source, carriers)
+        self.make_loops(source, carriers, through)
         self.set_positions(carriers, source, side)
         self.counts["split"] += 1
 
@@ -235,9 +247,7 @@ class Machine:
         self.counts["miss"] += 1
 
     def let_go(self, needle):
-        loops = self.stacks.pop(needle, [])
-        if loops:
-            self.dropped.append([self.line, name(needle), [list(loop) for loop in loops]])
+        self.end(self.stacks.pop(needle, []), "dropped")
         self.counts["drop"] += 1
 
     def transfer(self, source, target):
@@ -258,6 +268,7 @@ class Machine:
                 self.error(f"carrier {carrier} is in already")
             else:
                 self.waiting[carrier] = list(carriers)
+                self.brought_at[carrier] = self.line
 
     def take_out(self, words, with_hook):
         carriers = self.carriers(words)
@@ -288,32 +299,21 @@ class Machine:
 
     def operation(self, words):
         op, words = words[0], words[1:]
-        if op.startswith("x-"):
-            self.warning(f"extension {op} is ignored")
-            return
-        if op not in ARGUMENTS:
+        if op not in OPERATIONS:
+            if op.startswith("x-"):
+                self.warning(f"extension {op} is ignored")
+                return
             raise Refused(f"'{op}' is not an operation")
-        least, most = ARGUMENTS[op]
-        if len(words) < least or (most is not None and len(words) > most):
+        least, most, action = OPERATIONS[op]
+        if not least <= len(words) <= most:
             raise Refused(f"'{op}' does not take {len(words)} words")
-        if op in ("in", "inhook"):
-            self.bring_in(words, op == "inhook")
-        elif op in ("out", "outhook"):
-            self.take_out(words, op == "outhook")
-        elif op == "releasehook":
-            self.release(words)
-        elif op == "stitch":
-            self.number(words[0]), self.number(words[1])
-        elif op == "rack":
-            self.racking = self.number(words[0])
-        elif op == "drop":
-            self.let_go(self.needle(words[0]))
-        elif op == "amiss":
-            self.needle(words[0])
-        elif op == "xfer":
-            self.transfer(self.needle(words[0]), self.needle(words[1]))
-        elif op in ("knit", "tuck", "split", "miss"):
-            getattr(self, op)(words)
+        action(self, words)
+
+    def rack(self, words):
+        self.racking = self.number(words[0])
+
+    def stitch(self, words):
+        self.number(words[0]), self.number(words[1])
 
     # --- the file --------------------------------------------------------------------------------------------
     def headers(self, lines):
@@ -356,7 +356,7 @@ class Machine:
             self.warning("lines end in CR LF")
             lines = [line[:-1] if line.endswith("\r") else line for line in lines]
         for index in range(self.headers(lines), len(lines)):
-            words = [word for word in BLANKS.split(lines[index].split(";", 1)[0]) if word]
+            words = words_of(lines[index])
             if not words:
                 continue
             self.line = index + 1
@@ -364,8 +364,8 @@ class Machine:
                 self.operation(words)
             except Refused as refusal:
                 self.error(str(refusal))
-        self.line = 0
         for carrier in sorted(self.active | set(self.waiting)):
+            self.line = self.brought_at[carrier]
             self.error(f"carrier {carrier} is still in at the end")
 
     def report(self, path, history):
@@ -376,35 +376,60 @@ class Machine:
             "accepted": not self.errors,
             "errors": self.errors,
             "warnings": self.warnings,
-            "loops_at_end": {name(n): [list(loop) for loop in self.stacks[n]] for n in ordered},
+            "loops_at_end": {name(n): [self.loops[loop][:2] for loop in self.stacks[n]] for n in ordered},
             "stack_heights": {name(n): len(self.stacks[n]) for n in ordered},
             "most_stack": self.most_stack,
             "carriers": {
-                c: {"position": place(self.positions[c]) if c in self.positions else None, "active": c in self.active}
+                c: {
+                    "position": place(self.positions.get(c)),
+                    "last_used_at": place(self.last_used_at.get(c)),
+                    "active": c in self.active,
+                }
                 for c in sorted(names)
             },
             "counts": self.counts,
-            "loops_made": self.loops_made,
+            "loops_made": len(self.loops),
         }
         if history:
-            result.update(drawn=self.drawn, dropped=self.dropped, moved=self.moved, carrier_moves=self.carrier_moves)
+            result["loops"] = [f"{loop[0]} {loop[1]} {loop[2]}{loop[3]} {loop[4]}" for loop in self.loops]
+            result["uses"] = self.uses
         return result
 
 
-# The least and the most words after each operation; None where a carrier set of any size ends it.
-ARGUMENTS = {
-    "in": (0, None), "inhook": (0, None), "releasehook": (0, None), "out": (0, None), "outhook": (0, None),
-    "stitch": (2, 2), "rack": (1, 1), "knit": (2, None), "tuck": (2, None), "split": (3, None),
-    "miss": (2, None), "drop": (1, 1), "amiss": (1, 1), "xfer": (2, 2), "pause": (0, 0),
-}  # fmt: skip
+@lru_cache(maxsize=None)
+def words_of(line):
+    """What stands before the first `;`, cut at blanks, which are space and tab and nothing else."""
+    return [word for word in line.split(";", 1)[0].replace("\t", " ").split(" ") if word]
 
 
+ANY = math.inf
+# The least and the most words after each operation, and what it does with them.
+OPERATIONS = {
+    "in": (0, ANY, lambda machine, words: machine.bring_in(words, with_hook=False)),
+    "inhook": (0, ANY, lambda machine, words: machine.bring_in(words, with_hook=True)),
+    "releasehook": (0, ANY, Machine.release),
+    "out": (0, ANY, lambda machine, words: machine.take_out(words, with_hook=False)),
+    "outhook": (0, ANY, lambda machine, words: machine.take_out(words, with_hook=True)),
+    "stitch": (2, 2, Machine.stitch),
+    "rack": (1, 1, Machine.rack),
+    "pause": (0, 0, lambda machine, words: None),
+    "knit": (2, ANY, Machine.knit),
+    "tuck": (2, ANY, Machine.tuck),
+    "split": (3, ANY, Machine.split),
+    "miss": (2, ANY, Machine.miss),
+    "drop": (1, 1, lambda machine, words: machine.let_go(machine.needle(words[0]))),
+    "amiss": (1, 1, lambda machine, words: machine.needle(words[0])),
+    "xfer": (2, 2, lambda machine, words: machine.transfer(machine.needle(words[0]), machine.needle(words[1]))),
+}
+
+
+@lru_cache(maxsize=None)
 def name(needle):
     return f"{needle[0]}{needle[1]}"
 
 
 def place(position):
-    return f"{name(position[0])}{position[1]}"
+    return f"{name(position[0])}{position[1]}" if position else None
 
 
 def check(path, history=False):

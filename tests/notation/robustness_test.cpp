@@ -15,8 +15,9 @@ using testing::HasSubstr;
 std::vector<std::string> seeds() {
   std::vector<std::string> texts;
   std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(source_dir() / "examples"))
-    files.push_back(entry.path());
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(source_dir() / "examples"))
+    if (entry.path().extension() == ".verm" || entry.path().extension() == ".k")
+      files.push_back(entry.path());
   for (const char* name : {"icord-bind-off.k", "cross-test.k", "crlf.k", "split_pocket.k", "bad_ko.k"}) {
     if (std::filesystem::exists(corpus() / "files" / name)) files.push_back(corpus() / "files" / name);
   }

@@ -61,7 +61,8 @@ INSTANTIATE_TEST_SUITE_P(Corpus, RealProgramme,
 
 // Without friction a moss cell has rest states folded into itself; growing in must not lead there.
 TEST(PeriodicMoss, FindsTheFlatRestState) {
-  const std::filesystem::path file = std::filesystem::path(LOOPWRIGHT_SOURCE_DIR) / "examples" / "moss.verm";
+  const std::filesystem::path file =
+      std::filesystem::path(LOOPWRIGHT_SOURCE_DIR) / "examples" / "structures" / "moss.verm";
   PieceRequest request;
   request.periodic = true;
   request.friction = 0;

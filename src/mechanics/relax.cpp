@@ -85,6 +85,8 @@ FlatPlates plates_round(const Fabric& fabric, double room) {
 RelaxResult relax(const Fabric& fabric, const RelaxOptions& options) {
   if (!(options.tolerance > 0) || !std::isfinite(options.tolerance))
     throw std::invalid_argument("the tolerance must be a positive number");
+  if (!(options.model.material.contact.core > 0))  // only while yarn grows in may it be less
+    throw std::invalid_argument("the contact core must be thinner than the outer diameter, and both positive");
   ModelOptions model_options = options.model;
   if (!fabric.periodic && options.plate_room >= 0 && model_options.plates.stiffness == 0)
     model_options.plates = plates_round(fabric, options.plate_room);

@@ -294,7 +294,8 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
       SegmentDofs x;
       for (std::size_t k = 0; k < 4; ++k)
         for (std::size_t d = 0; d < 3; ++d) x[3 * k + d] = extended_[f + k][static_cast<int>(d)];
-      LocalTerm<12> stretch = Stretch{yarn.stretch_stiffness, yarn.rest_length}.evaluate(x);
+      LocalTerm<12> stretch =
+          Stretch{yarn.stretch_stiffness, model_.natural_length[static_cast<std::size_t>(e)]}.evaluate(x);
       const LocalTerm<12> bend = Bend{yarn.bend_stiffness, yarn.rest_length}.evaluate(x);
       if (whole) {
         sums.energy.stretch += stretch.energy;

@@ -2,12 +2,32 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "mechanics/newton.hpp"
 
 namespace loopwright {
 namespace {
+
+// Squared distance of the contact samples of two segments of one yarn, those too near along it to touch left
+// out.
+double touching_distance2(const YarnModel& model, const YarnState& state, const SamplePlaces& places,
+                          const SegmentPair& pair) {
+  const YarnModel::Yarn& yarn = model.yarn_of(pair.a);
+  const double spacing = yarn.rest_length / model.samples;
+  const Vec3 image = state.lattice(pair.m, pair.n);
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < model.samples; ++i)
+    for (int j = 0; j < model.samples; ++j) {
+      if (std::abs(pair.arc_offset + (j - i) * spacing) < model.excluded * yarn.diameter) continue;
+      const auto a = static_cast<std::size_t>(pair.a * model.samples + i),
+                 b = static_cast<std::size_t>(pair.b * model.samples + j);
+      least = std::min(least, squared_norm(Vec3{places.x[a], places.y[a], places.z[a]} - image -
+                                           Vec3{places.x[b], places.y[b], places.z[b]}));
+    }
+  return least;
+}
 
 // Smallest distance of contact samples of yarns that may touch, in units of their mean diameter; at most
 // `most`.
@@ -22,21 +42,30 @@ double smallest_clearance(const YarnModel& model, const YarnState& state, double
   find_segment_pairs(model, state, places, most * largest_diameter, pairs);
   double nearest = most;
   for (const SegmentPair& pair : pairs) {
-    const double diameter = 0.5 * (model.yarn_of(pair.a).diameter + model.yarn_of(pair.b).diameter);
-    if (!pair.same_yarn) nearest = std::min(nearest, std::sqrt(pair.distance2) / diameter);
+    const YarnModel::Yarn& yarn = model.yarn_of(pair.a);
+    const double diameter = 0.5 * (yarn.diameter + model.yarn_of(pair.b).diameter);
+    const double distance2 = pair.same_yarn ? touching_distance2(model, state, places, pair) : pair.distance2;
+    nearest = std::min(nearest, std::sqrt(distance2) / diameter);
   }
   return nearest;
 }
 
-ModelOptions at_radius(ModelOptions options, double radius) {
-  options.material.contact.outer *= radius;
-  options.material.contact.core *= radius;
-  // A thin frictionless yarn has room to slide into rest states that a thick one cannot leave (moss folded
-  // into itself); rubbing while it grows keeps it where the first geometry put it. At full radius the yarn's
-  // own friction counts.
+// The yarn while it grows in: its shell is whole, its core is smaller than it will be.
+ModelOptions with_core(ModelOptions options, double core) {
+  options.material.contact.core = core;
+  // A frictionless yarn can slide into rest states that it cannot leave (moss folded into itself); rubbing
+  // while it grows keeps it where the first geometry put it. Afterwards the yarn's own friction counts.
   constexpr double least_growing_friction = 0.3;
   options.material.friction = std::max(options.material.friction, least_growing_friction);
   return options;
+}
+
+// Lengths of all segments as they are drawn, in d, in the model's order.
+std::vector<double> drawn_lengths(const Fabric& fabric) {
+  std::vector<double> lengths;
+  for (const FabricYarn& yarn : fabric.yarns)
+    for (int e = 0; e < yarn.segments(); ++e) lengths.push_back(arc_length(fabric, yarn, e, e + 1));
+  return lengths;
 }
 
 FlatPlates plates_round(const Fabric& fabric, double room) {
@@ -56,6 +85,8 @@ FlatPlates plates_round(const Fabric& fabric, double room) {
 RelaxResult relax(const Fabric& fabric, const RelaxOptions& options) {
   if (!(options.tolerance > 0) || !std::isfinite(options.tolerance))
     throw std::invalid_argument("the tolerance must be a positive number");
+  if (!(options.model.material.contact.core > 0))  // only while yarn grows in may it be less
+    throw std::invalid_argument("the contact core must be thinner than the outer diameter, and both positive");
   ModelOptions model_options = options.model;
   if (!fabric.periodic && options.plate_room >= 0 && model_options.plates.stiffness == 0)
     model_options.plates = plates_round(fabric, options.plate_room);
@@ -85,22 +116,39 @@ RelaxResult relax(const Fabric& fabric, const RelaxOptions& options) {
     result.stopped = newton_result.stopped;
   };
 
-  // Grow-in: the yarn starts so thin that its shell is pressed by no more than a quarter, and grows as room
-  // is made.
+  // Grow-in: the yarn's hard core grows as room is made, its soft shell is there from the start. It keeps the
+  // lengths that it was drawn with until the core is whole, and then goes to its own in small steps: loops
+  // drawn too long or too short would drag yarn through whole courses before it can hold itself.
   if (options.grow_in) {
-    constexpr double pressed = 0.75;
-    double radius = 0;
+    const std::vector<double> drawn = drawn_lengths(fabric);
+    double most_strain = 0;
+    for (std::size_t e = 0; e < drawn.size(); ++e)
+      most_strain = std::max(most_strain, std::abs(drawn[e] / full.natural_length[e] - 1));
+    const auto drawn_in = [&](YarnModel model, double share) {  // 0: lengths as drawn, 1: those of the yarn
+      for (std::size_t e = 0; e < drawn.size(); ++e)
+        model.natural_length[e] = (1 - share) * drawn[e] + share * full.natural_length[e];
+      return model;
+    };
+    // The core for which the nearest pieces of yarn still have `left` of the shell between them; below zero
+    // where they nearly touch: then the law is finite everywhere, and only the safe step parts the yarns.
+    constexpr double left = 0.3, strain_a_stage = 0.15, enough_growth = 0.02;
+    const double core = full.contact.core,
+                 length_step = strain_a_stage / std::max(strain_a_stage, most_strain);
+    double own_length = 0, grown_before = -std::numeric_limits<double>::infinity();
     while (!result.stopped && result.newton_iterations < options.most_iterations) {
-      const double room = smallest_clearance(full, state, 1.5) / (outer * pressed);
-      const double next = std::min({1.0, room, radius == 0 ? 1.0 : 1.6 * radius});
-      if (next >= 1) break;
-      if (!(next > 1e-3)) {
-        result.message = "yarns touch in the first geometry: their centrelines are " +
-                         std::to_string(room * pressed * outer) + " d apart";
+      const double nearest = smallest_clearance(full, state, 1.5);
+      if (!(nearest > 1e-4)) {
+        result.message = "yarns touch in the first geometry";
         break;
       }
-      radius = std::max(next, radius);
-      run(build_yarn_model(fabric, at_radius(model_options, radius)), radius, 0.1, 12);
+      const double grown = std::min(core, (nearest - left * outer) / (1 - left));
+      // A knot drawn too tight opens only with more yarn.
+      if (grown == core || grown < grown_before + enough_growth) own_length += length_step;
+      if (grown == core && own_length >= 1) break;
+      grown_before = grown;
+      const double share = std::clamp(nearest / (core + left * (outer - core)), 0.0, 0.999);
+      run(drawn_in(build_yarn_model(fabric, with_core(model_options, grown)), std::min(own_length, 1.0)),
+          share, 0.1, 12);
     }
   }
   if (!result.stopped && result.message.empty()) run(full, 1, options.tolerance, options.most_iterations);

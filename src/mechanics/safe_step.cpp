@@ -9,6 +9,8 @@
 namespace loopwright {
 namespace {
 
+constexpr double smallest_ratio = 0.05;  // of motion to distance: less than this never cuts a step
+
 // A step taken apart into an affine map x -> x + T x + t of all space and what is left.
 struct AffineMotion {
   double in_plane = 0, across = 0;  // norms of the columns x, y of T, and of its column z
@@ -71,6 +73,39 @@ AffineMotion affine_motion(const YarnState& state, const YarnState& target, bool
   return motion;
 }
 
+// Yarn round a contact sample as a straight stick: its half, and how far that turns in the step.
+struct Stick {
+  Vec3 half, turn;
+};
+
+// Half-vectors of all samples' sticks: to the middle between neighbouring samples of a segment, so that
+// sticks tile the yarn as it lies, however stretched it is.
+std::vector<Stick> sticks(const SamplePlaces& from, const SamplePlaces& to, int samples) {
+  const auto n = static_cast<std::size_t>(samples);
+  const auto place = [](const SamplePlaces& p, std::size_t k) { return Vec3{p.x[k], p.y[k], p.z[k]}; };
+  std::vector<Stick> all(from.x.size());
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const std::size_t i = k % n, before = i > 0 ? k - 1 : k, after = i + 1 < n ? k + 1 : k;
+    const double share = 0.5 / static_cast<double>(after - before);
+    all[k].half = share * (place(from, after) - place(from, before));
+    all[k].turn = share * (place(to, after) - place(to, before)) - all[k].half;
+  }
+  return all;
+}
+
+// Distance of two sticks with centres apart by d: points d + s a - t b, s and t in [-1, 1]. Alternating
+// closest points find the minimum of this convex function; a few rounds give it well within a hundredth.
+double stick_distance2(const Vec3& d, const Vec3& a, const Vec3& b) {
+  const double aa = squared_norm(a), bb = squared_norm(b), ab = dot(a, b), da = dot(d, a), db = dot(d, b);
+  const double det = aa * bb - ab * ab;
+  double s = det > 1e-9 * aa * bb ? std::clamp((ab * db - bb * da) / det, -1.0, 1.0) : 0, t = 0;
+  for (int round = 0; round < 3; ++round) {
+    t = bb > 0 ? std::clamp((db + s * ab) / bb, -1.0, 1.0) : 0;
+    s = aa > 0 ? std::clamp((t * ab - da) / aa, -1.0, 1.0) : 0;
+  }
+  return squared_norm(d + s * a - t * b);
+}
+
 }  // namespace
 
 SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnState& state,
@@ -82,11 +117,13 @@ SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnS
   expand(model, target, extended);
   place_samples(model, extended, to);
 
+  const std::vector<Stick> stick = sticks(from, to, model.samples);
+
   const auto& pairs = assembly.pairs();
   constexpr int pairs_per_chunk = 4096;
   const int chunks = static_cast<int>((pairs.size() + pairs_per_chunk - 1) / pairs_per_chunk);
   struct Worst {
-    double ratio2 = 0;
+    double ratio2 = smallest_ratio * smallest_ratio;
     int a = -1, b = -1;
   };
   std::vector<Worst> worst(static_cast<std::size_t>(chunks));
@@ -99,10 +136,18 @@ SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnS
       const Vec3 image = state.lattice(pair.m, pair.n), moved_image = target.lattice(pair.m, pair.n) - image;
       const YarnModel::Yarn& yarn = model.yarn_of(pair.a);
       const double spacing = yarn.rest_length / model.samples;
-      const double missed = spacing * spacing;  // nearest samples lie up to half a spacing off on either yarn
       const auto i0 = static_cast<std::size_t>(pair.a * model.samples),
                  j0 = static_cast<std::size_t>(pair.b * model.samples);
       const auto count = static_cast<std::size_t>(model.samples);
+      double longest[2] = {0, 0}, most_turn[2] = {0, 0};
+      for (std::size_t i = 0; i < count; ++i)
+        for (const std::size_t which : {std::size_t{0}, std::size_t{1}}) {
+          const Stick& s = stick[(which == 0 ? i0 : j0) + i];
+          longest[which] = std::max(longest[which], squared_norm(s.half));
+          most_turn[which] = std::max(most_turn[which], squared_norm(s.turn));
+        }
+      const double halves = std::sqrt(longest[0]) + std::sqrt(longest[1]);
+      const double turns = std::sqrt(most_turn[0]) + std::sqrt(most_turn[1]);
       for (std::size_t i = 0; i < count; ++i) {
         const double x = from.x[i0 + i] - image.x, y = from.y[i0 + i] - image.y, z = from.z[i0 + i] - image.z;
         const double sx = to.x[i0 + i] - from.x[i0 + i] - moved_image.x,
@@ -117,9 +162,13 @@ SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnS
           const double rx = sx - (to.x[j0 + j] - from.x[j0 + j]), ry = sy - (to.y[j0 + j] - from.y[j0 + j]),
                        rz = sz - (to.z[j0 + j] - from.z[j0 + j]);
           const double r2 = rx * rx + ry * ry + rz * rz;
-          const double room2 = std::max(d2 - missed, 0.1 * d2);
-          if (r2 > w.ratio2 * room2) {
-            w.ratio2 = r2 / room2;
+          // Far enough apart that sticks would not change the verdict.
+          if (d2 > 9 * halves * halves && 2 * (r2 + turns * turns) <= 0.44 * w.ratio2 * d2) continue;
+          const Stick &one = stick[i0 + i], &other = stick[j0 + j];
+          const double motion = std::sqrt(r2) + norm(one.turn) + norm(other.turn);
+          const double room2 = std::max(stick_distance2({dx, dy, dz}, one.half, other.half), 1e-12);
+          if (motion * motion > w.ratio2 * room2) {
+            w.ratio2 = motion * motion / room2;
             w.a = pair.a;
             w.b = pair.b;
           }
@@ -129,7 +178,7 @@ SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnS
   });
 
   SafeStep result;
-  double ratio2 = 0;
+  double ratio2 = smallest_ratio * smallest_ratio;
   for (const Worst& w : worst)
     if (w.ratio2 > ratio2) {
       ratio2 = w.ratio2;

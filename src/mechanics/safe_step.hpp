@@ -1,10 +1,11 @@
 // How far a step may go so that no yarn passes through another.
 //
 // A straight motion of all points from x to x + s (0 to 1) cannot carry yarn a through yarn b while, for
-// every pair of their points, the relative motion stays below their distance. Checked at the contact samples
-// (0.18 d apart) of every pair of segments within the list's range, with distances lowered by what samples
-// can miss; all other pairs are farther apart than the range, so that motion beyond an affine map (which
-// moves no yarn through another) is capped by the range.
+// every pair of their points, the relative motion stays below their distance. Checked for every pair of
+// segments within the list's range, with the yarn as straight sticks round the contact samples (0.18 d apart
+// at rest length; sticks tile the yarn as it lies, so thin and stretched yarn is seen too); all other pairs
+// are farther apart than the range, so that motion beyond an affine map (which moves no yarn through another)
+// is capped by the range.
 #pragma once
 #include "mechanics/assembly.hpp"
 

@@ -16,8 +16,8 @@ void check_material(const YarnMaterial& m) {
   const auto positive = [](double v) { return std::isfinite(v) && v > 0; };
   require(positive(m.stretch_stiffness), "stretch stiffness must be a positive number");
   require(positive(m.bend_stiffness), "bend stiffness must be a positive number");
-  require(positive(m.contact.outer) && positive(m.contact.core) && m.contact.core < m.contact.outer,
-          "the contact core must be thinner than the outer diameter, and both positive");
+  require(positive(m.contact.outer) && std::isfinite(m.contact.core) && m.contact.core < m.contact.outer,
+          "the outer diameter must be positive and the contact core thinner than it");
   require(positive(m.contact.stiffness), "contact stiffness must be a positive number");
   require(std::isfinite(m.friction) && m.friction >= 0 && m.friction <= 5,
           "the friction coefficient must be from 0 to 5");
@@ -89,6 +89,7 @@ YarnModel build_yarn_model(const Fabric& fabric, const ModelOptions& options) {
     for (int e = 0; e < y.segments; ++e) {
       model.first.push_back(y.first_extended + e);
       model.yarn_of_segment.push_back(static_cast<std::int32_t>(model.yarns.size()));
+      model.natural_length.push_back(y.rest_length);
     }
     for (int i = 0; i < y.nodes; ++i)
       model.held.push_back(i < static_cast<int>(yarn.held.size()) ? yarn.held[static_cast<std::size_t>(i)]

@@ -51,6 +51,8 @@ struct YarnModel {
   std::vector<std::int32_t> first;                // [segment] first extended control point
   std::vector<std::int32_t> yarn_of_segment;      // [segment]
   std::vector<std::uint8_t> held;                 // [node]
+  // [segment] length at which it is not stretched, in d: the yarn's rest length, except while yarn grows in.
+  std::vector<double> natural_length;
 
   const Yarn& yarn_of(int segment) const {
     return yarns[static_cast<std::size_t>(yarn_of_segment[static_cast<std::size_t>(segment)])];

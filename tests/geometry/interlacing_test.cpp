@@ -5,6 +5,8 @@
 
 #include <cctype>
 #include <cmath>
+#include <map>
+#include <set>
 
 #include "geometry/pieces.hpp"
 
@@ -113,6 +115,39 @@ TEST(interlacing, a_leg_pushed_through_its_parent_is_found_and_named) {
       EXPECT_EQ(check.broken, std::vector<int>{static_cast<int>(k)}) << chart.name;
       EXPECT_EQ(check.intact, check.expected - 1) << chart.name;
     }
+  }
+}
+
+// How many of the pairs parent' - child, where parent' is a loop `offset` farther along the parent's yarn and
+// the two are not interlaced, are taken for interlaced, on either side.
+int wrong_pairs_found(const Fabric& fabric, int offset) {
+  std::map<LoopId, std::size_t> place;
+  for (std::size_t k = 0; k < fabric.loops.size(); ++k) place[fabric.loops[k].loop] = k;
+  std::set<std::pair<LoopId, LoopId>> true_pairs;
+  for (const PlacedInterlacing& pair : fabric.interlacings) true_pairs.insert({pair.parent, pair.child});
+  Fabric wrong = fabric;
+  wrong.interlacings.clear();
+  for (PlacedInterlacing pair : fabric.interlacings) {
+    const auto k = static_cast<std::ptrdiff_t>(place.at(pair.parent)), other = k + offset;
+    if (other < 0 || other >= std::ssize(fabric.loops)) continue;
+    const LoopSpan& parent = fabric.loops[static_cast<std::size_t>(other)];
+    if (parent.yarn != fabric.loops[static_cast<std::size_t>(k)].yarn) continue;
+    pair.parent = parent.loop;
+    if (true_pairs.count({pair.parent, pair.child}) > 0) continue;
+    wrong.interlacings.push_back(pair);
+    pair.sign = -pair.sign;
+    wrong.interlacings.push_back(pair);
+  }
+  EXPECT_FALSE(wrong.interlacings.empty());
+  return check_interlacings(wrong).intact;
+}
+
+TEST(interlacing, loops_beside_the_parent_and_the_other_side_are_not_taken_for_it) {
+  for (const Chart& chart : charts) {
+    Fabric fabric = whole_fabric(piece_of_text(chart_programme(chart.rows, 12, 13)));
+    for (const int offset : {-2, -1, 1, 2}) EXPECT_EQ(wrong_pairs_found(fabric, offset), 0) << chart.name;
+    for (PlacedInterlacing& pair : fabric.interlacings) pair.sign = -pair.sign;
+    EXPECT_EQ(check_interlacings(fabric).intact, 0) << chart.name;
   }
 }
 

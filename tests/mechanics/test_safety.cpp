@@ -73,6 +73,23 @@ TEST(SafeStep, AYarnPushedThroughAnotherStopsBeforeIt) {
   }
 }
 
+// Yarn drawn at four times its length lies between its contact samples, 0.7 d apart here, much nearer than
+// they are.
+TEST(SafeStep, StretchedYarnIsSeenBetweenItsSamples) {
+  Fabric fabric = two_yarns();
+  for (FabricYarn& yarn : fabric.yarns) yarn.segment_rest_length = 0.35;
+  for (const double gap : {0.1, 0.02})
+    for (const double along : {0.0, 0.13, 0.31}) {
+      Fabric near = fabric;
+      for (Vec3& p : near.yarns[1].control_points) p.z = gap, p.x += along;
+      Unknowns step = no_motion(near);
+      for (std::size_t i = 9; i < 18; ++i) step.u[i].z = -0.4;
+      const Motion motion = follow(near, step);
+      EXPECT_LT(0.4 * motion.scale, gap) << along;
+      EXPECT_GT(0.4 * motion.scale, 0.2 * gap) << along;
+    }
+}
+
 TEST(SafeStep, MovingAwayOrTogetherIsFree) {
   const Fabric fabric = two_yarns();
   Unknowns together = no_motion(fabric);

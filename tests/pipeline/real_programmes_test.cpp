@@ -4,8 +4,10 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <string>
 
+#include "geometry/interlacing.hpp"
 #include "pipeline.hpp"
 
 namespace loopwright {
@@ -58,6 +60,43 @@ INSTANTIATE_TEST_SUITE_P(Corpus, RealProgramme,
                              if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
                            return name;
                          });
+
+// A whole swatch, cast on and bound off, nothing held. Its cast-on and bind-off are drawn with yarn much too
+// long or short and almost touching, so that growing in has to do its work.
+TEST(BoundOffSwatch, RelaxesFreeWithEveryInterlacing) {
+  constexpr int last = 5, courses = 6;
+  std::string text = ";!knitout-2\n;;Carriers: 1\n;;Gauge: 12\n;;Yarn-1: wool 2/28 Nm\ninhook 1\n";
+  const auto line = [&text](const std::string& op, char direction, int needle) {
+    text += op + ' ' + direction + " f" + std::to_string(needle) + " 1\n";
+  };
+  for (int n = last; n >= 0; n -= 2) line("tuck", '-', n);
+  for (int n = 0; n <= last; n += 2) line("tuck", '+', n);
+  text += "releasehook 1\n";
+  for (int course = 0; course < courses; ++course)
+    for (int n = 0; n <= last; ++n) course % 2 == 0 ? line("knit", '-', last - n) : line("knit", '+', n);
+  for (int n = 0; n < last; ++n) {  // each loop onto its neighbour's needle, the yarn through both
+    const std::string here = std::to_string(n), next = std::to_string(n + 1);
+    text += "xfer f" + here + " b" + here + "\nrack 1\nxfer b" + here + " f" + next + "\nrack 0\n";
+    line("knit", '+', n + 1);
+  }
+  line("knit", '-', last);
+  line("knit", '+', last);
+  text += "outhook 1\ndrop f" + std::to_string(last) + "\n";
+
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "bound_off_swatch.k";
+  std::ofstream(file) << text;
+  Diagnostics diagnostics(file.string());
+  const Knitting knitting = knit(file, {}, diagnostics);
+  ASSERT_TRUE(diagnostics.ok()) << diagnostics;
+  const Fabric first = first_geometry(knitting, {});
+  const int interlacings = check_interlacings(first).intact;
+  EXPECT_EQ(interlacings, static_cast<int>(first.interlacings.size()));
+  EXPECT_GT(interlacings, 45);
+  const RelaxResult relaxed = relax(first, relax_options(first, knitting.program, {}));
+  EXPECT_TRUE(relaxed.converged) << relaxed.message;
+  EXPECT_EQ(relaxed.pass_throughs, 0);
+  EXPECT_EQ(check_interlacings(relaxed.fabric).intact, interlacings);
+}
 
 // Without friction a moss cell has rest states folded into itself; growing in must not lead there.
 TEST(PeriodicMoss, FindsTheFlatRestState) {

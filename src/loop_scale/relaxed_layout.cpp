@@ -57,19 +57,25 @@ std::vector<Round> rounds_of(const YarnGraph& graph, const BindingPoints& points
   return rounds;
 }
 
-// Outward forces that hold the two sides of a tube apart.
-Load apart(const YarnGraph& graph, const LoopModel& model, StitchSide side, double force) {
-  Load load;
-  std::vector<char> taken(model.net.mass.size());
+// A flat tube laid round a cylinder of its width: what lies on the front bed in front, the rest behind. Where
+// less than half the piece is knitted in rounds it is no tube and stays as it is.
+std::vector<Vec3> round_start(const YarnGraph& graph, const LoopModel& model) {
+  std::size_t in_rounds = 0;
   for (const Round& round : rounds_of(graph, model.points))
-    for (const Run& run : {round.one, round.other})
-      for (std::size_t i = run.first; i <= run.last; ++i) {
-        const LoopId id = graph.yarns[run.yarn].loops[i];
-        const std::int32_t mass = model.points.lower[id.position()];
-        if (graph.loop(id).side == side && !taken[at(mass)]++) load.masses.push_back(mass);
-      }
-  load.force = {0, 0, side == StitchSide::front ? force : -force};
-  return load;
+    for (const Run& run : {round.one, round.other}) in_rounds += run.last - run.first + 1;
+  if (2 * in_rounds < graph.loops.size()) return model.start;
+  double left = model.start[0].x, right = left;
+  for (const Vec3& p : model.start) left = std::min(left, p.x), right = std::max(right, p.x);
+  const double wide = right - left + model.geometry.wale_pitch, radius = wide / std::numbers::pi;
+  std::vector<Vec3> places = model.start;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const double share = (places[i].x - left + model.geometry.wale_pitch / 2) / wide;
+    const double angle = std::numbers::pi * (1 - share);
+    const bool front = is_front(model.points.points[i].bed);
+    places[i].x = (left + right) / 2 + radius * std::cos(angle);
+    places[i].z = (front ? radius : -radius) * std::sin(angle);
+  }
+  return places;
 }
 
 }  // namespace
@@ -92,17 +98,7 @@ RelaxedLayout relaxed_layout(const YarnGraph& graph, const Program& program, con
                              const SettleOptions& settling) {
   RelaxedLayout layout{build_loop_model(graph, program, options), {}, {}, {}};
   LoopModel& model = layout.model;
-  layout.state = state_at_rest(model.start);
-  // A weak push for as long as a wave takes to cross the piece a few times.
-  const double step = NetKernel(model.net).stable_step();
-  const double push = 0.002 * stiffness_unit(model.yarn) * model.yarn.loop_length * 1000;
-  const double long_enough = 40 * step * std::sqrt(static_cast<double>(model.net.mass.size()));
-  for (const StitchSide side : {StitchSide::front, StitchSide::rear}) {
-    Load load = apart(graph, model, side, push);
-    if (load.masses.empty()) continue;
-    load.factor = {{0, 1}, {long_enough / 2, 1}, {long_enough, 0}};
-    model.net.loads.push_back(std::move(load));
-  }
+  layout.state = state_at_rest(round_start(graph, model));
   NetKernel kernel(model.net);
   layout.result = settle(kernel, model.net, layout.state, settling);
   layout.curves = curves_at(model, layout.state);

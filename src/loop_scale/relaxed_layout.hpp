@@ -20,8 +20,8 @@ struct RelaxedLayout {
 LoopModelOptions layout_options();
 SettleOptions layout_settling();  // to 2e-4
 
-// Relaxes in the plane of the start unless the piece has two beds. Tubes are opened: a pressure that holds
-// them apart acts at first and is taken away again.
+// Starts from the structure model. A piece that is knitted mostly in rounds starts laid round a cylinder of
+// its width: flat, it is at rest as well, and no spring would open it.
 RelaxedLayout relaxed_layout(const YarnGraph& graph, const Program& program,
                              const LoopModelOptions& options = layout_options(),
                              const SettleOptions& settling = layout_settling());

@@ -3,78 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "machine/carriage.hpp"
-#include "machine/carriers.hpp"
-#include "machine/crossings.hpp"
-#include "machine/needle_table.hpp"
-#include "machine/racking.hpp"
+#include "machine/machine.hpp"
 
 namespace loopwright {
 namespace {
 
 constexpr double most_racking = 1e6;  // beyond any bed; keeps needle arithmetic exact
 
-class Machine {
- public:
-  Machine(const Program& program, Diagnostics& diagnostics)
-      : program_(program),
-        diagnostics_(diagnostics),
-        needles_(program),
-        stacks_(static_cast<std::size_t>(needles_.size())),
-        carriers_(program, diagnostics),
-        carriage_(program),
-        crossings_(needles_, stacks_) {}
-
-  KnittingRecord run();
-
- private:
-  void make_room();
-  void rack(const Instruction& instruction);
-  void form_loops(const Instruction& instruction);
-  void miss(const Instruction& instruction);
-  void transfer(const Instruction& instruction);
-  void drop(const Instruction& instruction);
-
-  std::vector<LoopId>& stack(Needle needle) {
-    return stacks_[static_cast<std::size_t>(needles_.position(needle))];
-  }
-  LoopRecord& loop(LoopId id) { return record_.loops[id.position()]; }
-  // Whether loops can move between two needles now; says why not.
-  bool can_transfer(const Instruction& instruction);
-  void move_stack(Needle from, Needle to);
-  void end_stack(Needle needle, LoopFate fate,
-                 int fate_instruction);  // records how the loops lay; does not remove them
-  void count_pass(const Instruction& instruction, const std::vector<CarrierId>& set);
-  void lay_yarn(const Instruction& instruction, CarrierId id, LoopId formed);
-  bool is_twisted(const Instruction& instruction, CarrierId id);
-  void count(Acts& acts, Needle needle) const;
-  void count_tall_stack(Needle needle, std::size_t before);
-  void count_caught_yarns(const Instruction& instruction, const std::vector<CarrierId>& set);
-  void watch_hook(const Instruction& instruction, const std::vector<CarrierId>& set);
-
-  const Program& program_;
-  Diagnostics& diagnostics_;
-  NeedleTable needles_;
-  std::vector<std::vector<LoopId>> stacks_;  // by needle position
-  Racking racking_;
-  Carriers carriers_;
-  Carriage carriage_;
-  CrossingTracker crossings_;
-  KnittingRecord record_;
-  std::vector<LoopId> last_loop_;    // by yarn
-  int now_ = 0;                      // index of the instruction that runs
-  std::optional<double> hook_slot_;  // of the first needle of what the hook holds, once there is one
-  std::string stitch_setting_;       // the last x- operation: settings such as x-stitch-number end a pass
-
-  // The carriage pass that is under way.
-  std::vector<CarrierId> pass_set_;
-  Direction pass_direction_ = Direction::none;
-  long long pass_order_ = 0;
-};
-
-Direction direction_of(const Instruction& instruction) {
-  return instruction.direction == Direction::left ? Direction::left : Direction::right;
-}
+}  // namespace
 
 // Room for all loops at once: a long programme would else copy them again and again.
 void Machine::make_room() {
@@ -346,66 +282,6 @@ void Machine::lay_yarn(const Instruction& instruction, CarrierId id, LoopId form
   carrier.at = instruction.needle;
   carrier.side = step.direction;
 }
-
-// The yarn comes from beside the needle where the carrier stands; it is laid the wrong way round if the
-// carrier must first go past the needle to come back over it.
-bool Machine::is_twisted(const Instruction& instruction, CarrierId id) {
-  const Carrier& carrier = carriers_[id];
-  if (!carrier.at) return false;
-  const long long from = 2 * racking_.order(*carrier.at) + static_cast<int>(carrier.side);
-  const long long to = 2 * racking_.order(instruction.needle);
-  return direction_of(instruction) == Direction::right ? from > to : from < to;
-}
-
-void Machine::count(Acts& acts, Needle needle) const {
-  if (acts.count++ > 0) return;
-  acts.first = now_;
-  acts.needle = needle;
-}
-
-void Machine::count_tall_stack(Needle needle, std::size_t before) {
-  const std::size_t loops = stack(needle).size();
-  if (loops <= most_loops_on_needle) return;
-  if (before <= most_loops_on_needle) count(record_.tall_stacks, needle);
-  record_.tall_stacks.highest = std::max(record_.tall_stacks.highest, static_cast<int>(loops));
-}
-
-// A carrier that went past needles without a loop leaves its yarn across them: a loop made there catches it.
-void Machine::count_caught_yarns(const Instruction& instruction, const std::vector<CarrierId>& set) {
-  for (CarrierId id : carriers_.active()) {
-    const Carrier& carrier = carriers_[id];
-    if (!carrier.missed || std::find(set.begin(), set.end(), id) != set.end()) continue;
-    const LoopId last = last_loop_[carrier.yarn.position()];
-    if (!last.valid()) continue;
-    const long long here = 2 * racking_.order(instruction.needle);
-    const long long begin = 2 * racking_.order(loop(last).last().needle);
-    const long long end = 2 * racking_.order(*carrier.at) + static_cast<int>(carrier.side);
-    if (std::abs(end - begin) <= 4 * most_needles_passed) continue;
-    if (std::min(begin, end) >= here || here >= std::max(begin, end)) continue;
-    if (record_.caught_yarns.count == 0) record_.caught_yarns.carrier = id;
-    count(record_.caught_yarns, instruction.needle);
-  }
-}
-
-// The hook is parked to the right of the first needle of what it holds, and hides the needles there.
-void Machine::watch_hook(const Instruction& instruction, const std::vector<CarrierId>& set) {
-  const std::vector<CarrierId>& holds = carriers_.hook();
-  if (holds.empty()) {
-    hook_slot_.reset();
-    return;
-  }
-  const double slot = racking_.slot(instruction.needle);
-  const bool holds_this = std::find(set.begin(), set.end(), holds.front()) != set.end();
-  if (!hook_slot_) {
-    if (!holds_this) return;  // it comes with its first use
-    hook_slot_ = slot;
-    if (direction_of(instruction) == Direction::right) count(record_.hook_to_right, instruction.needle);
-  } else if (slot > *hook_slot_ && slot <= *hook_slot_ + needles_behind_hook) {
-    count(record_.hook_blocked, instruction.needle);
-  }
-}
-
-}  // namespace
 
 KnittingRecord run_machine(const Program& program, Diagnostics& diagnostics) {
   return Machine(program, diagnostics).run();

@@ -104,8 +104,7 @@ bool works_on(char letter, Bed bed) {
 
 // What is wrong with the place, and for change_operation the pass's row that holds the needle.
 std::string check_place(const Vermiculation& notation, NeedlePlace place) {
-  if (const std::string problem = no_such_pass(notation, place.line, place.pass); !problem.empty())
-    return problem;
+  if (std::string problem = no_such_pass(notation, place.line, place.pass); !problem.empty()) return problem;
   if (is_slider(place.bed)) return "sliders are not in the notation";
   const std::size_t wales = repeat_wales(notation);
   if (wales == 0) return "the repeat is too wide to be written out";

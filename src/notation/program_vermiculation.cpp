@@ -6,6 +6,7 @@
 #include <set>
 
 #include "notation/fabric_headers.hpp"
+#include "notation/needle_acts.hpp"
 #include "notation/parse_course.hpp"
 #include "notation/program_passes.hpp"
 #include "notation/read_vermiculation.hpp"
@@ -405,61 +406,6 @@ class Decompiler {
   int last_column_ = 0;
 };
 
-// What is compared: every needle instruction that does something, under its racking, with the first needle at
-// 0.
-struct Act {
-  Op op;
-  Direction direction;
-  Needle needle, target;
-  double racking;
-  std::vector<std::string> carriers;
-  SourceLocation at;
-  friend bool operator==(const Act& a, const Act& b) {
-    return a.op == b.op && a.direction == b.direction && a.needle == b.needle && a.target == b.target &&
-           a.racking == b.racking && a.carriers == b.carriers;
-  }
-};
-
-// Transfers that follow one another at one racking and share no needle may come in any order.
-void sort_transfers(std::vector<Act>& acts) {
-  for (std::size_t i = 0; i < acts.size();) {
-    std::set<Needle> used;
-    std::size_t end = i;
-    while (end < acts.size() && acts[end].op == Op::xfer && acts[end].racking == acts[i].racking &&
-           !used.contains(acts[end].needle) && !used.contains(acts[end].target)) {
-      used.insert(acts[end].needle);
-      used.insert(acts[end].target);
-      ++end;
-    }
-    std::sort(acts.begin() + static_cast<std::ptrdiff_t>(i), acts.begin() + static_cast<std::ptrdiff_t>(end),
-              [](const Act& a, const Act& b) { return a.needle < b.needle; });
-    i = std::max(end, i + 1);
-  }
-}
-
-std::vector<Act> acts_of(const Program& program, int first) {
-  std::vector<Act> acts;
-  std::map<Needle, std::size_t> held;
-  double racking = 0;
-  for (const Instruction& each : program.instructions) {
-    if (each.op == Op::rack) racking = each.value;
-    // a miss moves no loop, and needles that it faces may hide it
-    if (each.op < Op::knit || each.op == Op::miss) continue;
-    const bool gives = each.op == Op::xfer;
-    if (!carries_yarn(each) && held[each.needle] == 0) continue;
-    Act act{each.op, each.direction, each.needle, each.target, racking, {}, each.at};
-    act.needle.index -= first;
-    if (gives) act.target.index -= first;
-    for (const CarrierId id : each.carriers) act.carriers.push_back(program.carriers[id.position()]);
-    acts.push_back(std::move(act));
-    if (gives) held[each.target] += held[each.needle];
-    const std::size_t loops = carries_yarn(each) ? each.carriers.size() : 0;
-    held[each.needle] = each.op == Op::tuck ? held[each.needle] + loops : loops;
-  }
-  sort_transfers(acts);
-  return acts;
-}
-
 Extent whole_of(const Program& program) {
   Extent extent{0, program.instructions.size(), 0, 0, false};
   bool any = false;
@@ -493,9 +439,9 @@ std::string write_vermiculation(const Program& program, Diagnostics& diagnostics
   if (const auto repeat = repeat_of(program)) {
     Diagnostics lost, again;
     const Vermiculation notation = Decompiler(program, *repeat, lost).notation();
-    const std::string text = write_vermiculation(notation);
+    std::string text = write_vermiculation(notation);
     const Program copy = read_vermiculation(text, again);
-    if (lost.list().empty() && again.ok() && acts_of(copy, 0) == acts_of(program, 0)) return text;
+    if (lost.list().empty() && again.ok() && needle_acts(copy, 0) == needle_acts(program, 0)) return text;
     // a piece smaller than its repeat, say: it is written whole
   }
   const Extent whole = whole_of(program);
@@ -517,7 +463,7 @@ std::string write_vermiculation(const Program& program, Diagnostics& diagnostics
     return {};
   }
   const int warnings = diagnostics.warnings();
-  const std::string text = write_vermiculation(Decompiler(program, whole, diagnostics).notation());
+  std::string text = write_vermiculation(Decompiler(program, whole, diagnostics).notation());
   Diagnostics again;
   const Program copy = read_vermiculation(text, again);
   for (const Diagnostic& each : again.list())
@@ -525,7 +471,7 @@ std::string write_vermiculation(const Program& program, Diagnostics& diagnostics
       diagnostics.error({}, "the fabric file cannot be knitted as it is, at its line " +
                                 std::to_string(each.at.line) + ": " + each.message);
   if (!again.ok() || diagnostics.warnings() > warnings) return text;
-  const std::vector<Act> wanted = acts_of(program, whole.first), made = acts_of(copy, 0);
+  const std::vector<NeedleAct> wanted = needle_acts(program, whole.first), made = needle_acts(copy, 0);
   const auto differs = std::mismatch(wanted.begin(), wanted.end(), made.begin(), made.end());
   if (differs.first != wanted.end() || differs.second != made.end())
     diagnostics.warning(differs.first != wanted.end() ? differs.first->at : SourceLocation{},

@@ -120,8 +120,10 @@ class Drawing {
     };
     Line line;
     line.pass = &pass;
+    const auto gives = [](const DiagramNeedle& needle) { return needle.operation == NeedleOperation::split; };
     line.has_rear =
-        diagram_.rear_bed && (!pass.carries_yarn || std::any_of(pass.rear.begin(), pass.rear.end(), meant));
+        diagram_.rear_bed && (!pass.carries_yarn || std::any_of(pass.rear.begin(), pass.rear.end(), meant) ||
+                              std::any_of(pass.front.begin(), pass.front.end(), gives));
     const double reach = pass.carries_yarn ? loop_depth : 0;
     line.front = reach;
     line.rear = line.front + bed_distance;

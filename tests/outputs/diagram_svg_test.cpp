@@ -117,6 +117,17 @@ TEST(DiagramSvg, TransfersAreArrowsAndThoseUnsaidDashed) {
   EXPECT_THAT(drawn("g\ne\n"), HasSubstr("dasharray"));
 }
 
+TEST(DiagramSvg, ASplitHasTheNeedleThatItGivesTo) {
+  Diagnostics diagnostics("s.k");
+  const Program program = read_program_text(
+      ";!knitout-2\n;;Carriers: 1\nin 1\nknit + f1 1\nsplit - f1 b1 1\nout 1\n", ".k", diagnostics);
+  const std::string svg = diagram_svg(needle_diagram(program));
+  EXPECT_EQ(count(paths(svg), 'z'), 1);
+  const std::string dots =
+      paths(svg, "#b5b5b5");  // the rear needle of the split, none of the course before it
+  EXPECT_EQ(count(dots, 'M'), 1);
+}
+
 TEST(DiagramSvg, SeveralYarnsHaveTheirColoursAndNames) {
   const std::string svg =
       drawn(";;Yarn-A: colour=#f2e6c8\n;;Yarn-B2: colour=#28406a\nA: g.\nB2: .g\nA+B2: g\n");

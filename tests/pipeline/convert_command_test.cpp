@@ -78,6 +78,28 @@ TEST(ConvertCommand, KnitoutBecomesAFabricFileAndItsLossesAreTold) {
   EXPECT_EQ(run_command({"convert", "a.verm", "-o", "back.k"}, folder).status, 0);
 }
 
+TEST(ConvertCommand, KnitoutIsWrittenAnewInOneSpelling) {
+  const TemporaryFolder folder;
+  folder.write("a.k",
+               ";!knitout-2\r\n;;Carriers: A\r\n\tin  A;\r\nrack +0\r\nknit + f+1 A ; a remark\r\nout A\r\n");
+  const CommandOutcome done = run_command({"convert", "a.k", "-o", "b.k"}, folder);
+  EXPECT_EQ(done.status, 0) << done.err;
+  EXPECT_EQ(file_content(folder.file("b.k")),
+            ";!knitout-2\n;;Carriers: A\nin A\nrack 0\nknit + f1 A\nout A\n");
+  EXPECT_EQ(run_command({"convert", "a.k", "-o", "c.k", "--machine", "shima"}, folder).status, 1);
+}
+
+TEST(ConvertCommand, APieceThatIsTooWideIsNotWritten) {
+  const TemporaryFolder folder;
+  folder.write("wide.verm", ";!vermiculation-1\n;;Size: 253 wales x 2 courses\ng\n");
+  const CommandOutcome done =
+      run_command({"convert", "wide.verm", "-o", "wide.k", "--machine", "kniterate"}, folder);
+  EXPECT_EQ(done.status, 1);
+  EXPECT_THAT(done.err, HasSubstr("the piece takes 253 needles, the bed has 252"));
+  EXPECT_THAT(folder.names(), ElementsAre("wide.verm"));
+  EXPECT_EQ(run_command({"convert", "wide.verm", "-o", "wide.k"}, folder).status, 0);
+}
+
 TEST(ConvertCommand, RefusesWhatMakesNoSense) {
   const TemporaryFolder folder;
   folder.write("plain.verm", plain);

@@ -1,0 +1,107 @@
+// Real programmes and a tube relaxed at loop scale: shape, widths, enclosed volume, interlacings.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/pieces.hpp"
+#include "loop_scale/relaxed_layout.hpp"
+
+namespace loopwright {
+namespace {
+
+int intact(const Piece& piece, const RelaxedLayout& layout) {
+  return check_interlacings(fit_fabric(layout.curves, piece.graph, layout.model.geometry)).intact;
+}
+
+// Tube of n needles on each bed: to the right on the front, back to the left on the rear.
+std::string tube_programme(int n, int rounds) {
+  std::string text = ";!knitout-2\n;;Carriers: 1\ninhook 1\n";
+  for (int round = 0; round < rounds; ++round)
+    for (const char bed : {'f', 'b'})
+      for (int k = 0; k < n; ++k)
+        text += std::string("knit ") + (bed == 'f' ? '+' : '-') + ' ' + bed +
+                std::to_string(bed == 'f' ? k : n - 1 - k) + " 1\n";
+  return text + "outhook 1\n";
+}
+
+TEST(relaxed_layout, tube_opens_and_stays_knitted) {
+  const Piece piece = piece_of_text(tube_programme(10, 10));
+  const RelaxedLayout layout = relaxed_layout(piece.graph, piece.program);
+  EXPECT_TRUE(layout.result.settled);
+  const std::vector<RoundMeasure> rounds = round_measures(piece.graph, layout);
+  ASSERT_EQ(rounds.size(), 10U);
+  const double l = layout.model.yarn.loop_length;
+  for (const RoundMeasure& round : rounds) {
+    EXPECT_EQ(round.loops, 20);
+    EXPECT_GT(round.roundness, 0.7);
+    EXPECT_NEAR(round.perimeter / l, 20 * 0.2456, 0.05 * 20 * 0.2456);
+  }
+  EXPECT_EQ(intact(piece, layout), static_cast<int>(piece.graph.interlacings.size()));
+}
+
+TEST(relaxed_layout, flat_tube_encloses_less) {
+  const Piece piece = piece_of_text(tube_programme(10, 10));
+  RelaxedLayout start = relaxed_layout(piece.graph, piece.program);
+  start.state = state_at_rest(start.model.start);
+  for (const RoundMeasure& round : round_measures(piece.graph, start)) EXPECT_LT(round.roundness, 0.4);
+}
+
+struct Programme {
+  const char* file;
+  int broken;  // interlacings that the layout leaves, of all (the first geometry's own beside it)
+};
+
+// Named beside each test so that a failure says which programme it was.
+class real_layout : public testing::TestWithParam<Programme> {};
+
+TEST_P(real_layout, widths_follow_stitch_counts) {
+  const std::filesystem::path file = corpus() / "files" / GetParam().file;
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "the corpus of real programmes is not here";
+  const Piece piece = piece_of_text(text_of(file));
+  const RelaxedLayout layout = relaxed_layout(piece.graph, piece.program);
+  EXPECT_TRUE(layout.result.settled);
+  // courses of even stitches on neighbouring needles: each as wide as its stitches at rest
+  int ordinary = 0;
+  double most = 0;
+  for (const CourseMeasure& course : course_measures(piece.graph, layout)) {
+    if (course.stitches < 10) continue;
+    const double share = course.width / layout.model.yarn.loop_length / (course.stitches - 1) / 0.2456;
+    if (share > 1.5) continue;  // knitted on every other needle: a cast-on
+    ++ordinary;
+    most = std::max(most, std::abs(share - 1));
+  }
+  EXPECT_GT(ordinary, 10);
+  EXPECT_LT(most, 0.1);
+  EXPECT_GE(intact(piece, layout), static_cast<int>(piece.graph.interlacings.size()) - GetParam().broken);
+}
+
+INSTANTIATE_TEST_SUITE_P(corpus, real_layout,
+                         testing::Values(Programme{"rectangle.knitout", 0}, Programme{"diamond.k", 2}),
+                         [](const testing::TestParamInfo<Programme>& of) {
+                           std::string name = of.param.file;
+                           std::replace_if(
+                               name.begin(), name.end(), [](char c) { return !std::isalnum(c); }, '_');
+                           return name;
+                         });
+
+TEST(relaxed_layout, diamond_grows_and_shrinks) {
+  const std::filesystem::path file = corpus() / "files" / "diamond.k";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "the corpus of real programmes is not here";
+  const Piece piece = piece_of_text(text_of(file));
+  const RelaxedLayout layout = relaxed_layout(piece.graph, piece.program);
+  std::vector<CourseMeasure> courses = course_measures(piece.graph, layout);
+  std::erase_if(courses, [](const CourseMeasure& c) { return c.stitches < 3; });
+  const auto widest = std::max_element(courses.begin(), courses.end(),
+                                       [](const auto& a, const auto& b) { return a.width < b.width; });
+  // widest in the middle, narrow at both ends, and higher courses are higher
+  EXPECT_GT(widest - courses.begin(), 10);
+  EXPECT_GT(courses.end() - widest, 10);
+  EXPECT_LT(courses.front().width, 0.2 * widest->width);
+  EXPECT_LT(courses.back().width, 0.2 * widest->width);
+  EXPECT_GT(courses.back().height, widest->height);
+  EXPECT_GT(widest->height, courses.front().height);
+}
+
+}  // namespace
+}  // namespace loopwright

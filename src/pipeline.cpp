@@ -160,6 +160,8 @@ RelaxOptions relax_options(const State& state) {
   material.contact.stiffness = number("contact_stiffness");
   material.contact.exponent = number("contact_exponent");
   material.friction = number("friction");
+  if (state.numbers.contains("plate_stiffness"))
+    options.model.plates = {number("plate_stiffness"), number("plate_low"), number("plate_high")};
   options.grow_in = number("radius") < 1;
   return options;
 }
@@ -237,6 +239,11 @@ State saved_state(const Fabric& fabric, const RelaxOptions& options, double radi
 
 State saved_state(const RelaxResult& relaxed, const RelaxOptions& options, double radius) {
   State state = saved_state(relaxed.fabric, options, radius);
+  if (relaxed.plates.stiffness > 0) {
+    state.numbers["plate_stiffness"] = relaxed.plates.stiffness;
+    state.numbers["plate_low"] = relaxed.plates.low;
+    state.numbers["plate_high"] = relaxed.plates.high;
+  }
   state.numbers["pass_throughs"] = relaxed.pass_throughs;
   state.numbers["converged"] = relaxed.converged ? 1 : 0;
   state.numbers["residual"] = relaxed.residual;

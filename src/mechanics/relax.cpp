@@ -86,7 +86,8 @@ RelaxResult relax(const Fabric& fabric, const RelaxOptions& options) {
   if (!(options.tolerance > 0) || !std::isfinite(options.tolerance))
     throw std::invalid_argument("the tolerance must be a positive number");
   if (!(options.model.material.contact.core > 0))  // only while yarn grows in may it be less
-    throw std::invalid_argument("the contact core must be thinner than the outer diameter, and both positive");
+    throw std::invalid_argument(
+        "the contact core must be thinner than the outer diameter, and both positive");
   ModelOptions model_options = options.model;
   if (!fabric.periodic && options.plate_room >= 0 && model_options.plates.stiffness == 0)
     model_options.plates = plates_round(fabric, options.plate_room);
@@ -154,6 +155,7 @@ RelaxResult relax(const Fabric& fabric, const RelaxOptions& options) {
   if (!result.stopped && result.message.empty()) run(full, 1, options.tolerance, options.most_iterations);
 
   result.fabric = with_state(fabric, state);
+  result.plates = model_options.plates;
   result.energy = newton_result.energy;
   result.residual = newton_result.residual;
   result.measure_residual = newton_result.measure_residual;

@@ -22,7 +22,8 @@ struct RelaxOptions {
   int most_iterations = 1500;
   bool grow_in = true;  // start with a thin yarn; false: the fabric is a saved state at full radius
   // Finite pieces lie between two plates, this far (in d) beyond the first geometry's centrelines: plain
-  // cloth curls otherwise. Negative: no plates. Periodic cells need none.
+  // cloth curls otherwise. Negative: no plates. Periodic cells need none. `model.plates`, if they have a
+  // stiffness, stand where they are: a piece that is gone on with keeps its own.
   double plate_room = 0.25;
   // Called after every iteration; returning false stops the run (what was reached is returned, not
   // converged).
@@ -35,6 +36,7 @@ struct RelaxResult {
   double residual = 0;          // largest force on a control point, B/d^2
   double measure_residual = 0;  // largest dE/d(width or height) of one wale or course, B/d^2
   int newton_iterations = 0, linear_iterations = 0, factorisations = 0;
+  FlatPlates plates;  // between which a finite piece lies; stiffness 0: none
   bool converged = false, stopped = false;
   int pass_throughs = 0;  // steps that could not be certified free of crossings: 0, or the result is broken
   std::string message;    // why it ended, in words

@@ -157,6 +157,20 @@ TEST(Road, SavedStateIsGoneOnWith) {
   }
 }
 
+// A finite piece that is gone on with lies between the plates of its first run, not between new ones round
+// what the first run left.
+TEST(Road, APieceThatIsGoneOnWithKeepsItsPlates) {
+  const TemporaryFolder folder;
+  folder.write("held.verm", plain);
+  ASSERT_EQ(run_command({"relax", "held.verm", "-o", "a.h5", "--most-iterations", "3"}, folder).status, 0);
+  ASSERT_EQ(run_command({"relax", "a.h5", "-o", "b.h5", "--most-iterations", "3"}, folder).status, 0);
+  const State first = read_state(folder.file("a.h5")), second = read_state(folder.file("b.h5"));
+  EXPECT_GT(first.numbers.at("plate_stiffness"), 0);
+  EXPECT_LT(first.numbers.at("plate_low"), first.numbers.at("plate_high"));
+  for (const char* number : {"plate_stiffness", "plate_low", "plate_high"})
+    EXPECT_EQ(second.numbers.at(number), first.numbers.at(number)) << number;
+}
+
 TEST(Road, InterruptedRunIsSavedAndSaysSo) {
   const TemporaryFolder folder;
   std::string large = plain;

@@ -21,11 +21,13 @@ std::string write_course(const CourseLine& line, const std::vector<Vermiculation
 bool same_notation(const Vermiculation& a, const Vermiculation& b);
 bool same_course(const CourseLine& a, const CourseLine& b);
 
-/// The Program as a fabric file. Knitted to its size this makes the same operations on the same needles by
-/// the same yarns in the same order, counted from the left-most needle used. What vermiculation cannot say
-/// (drop, split, sliders, stitch values, carriers that leave early, ...) is left out and told as a warning in
-/// `diagnostics` with its place; without a warning nothing was lost. A Program that came from a fabric file
-/// gets its repeat, size and edges back.
+/// The Program as a fabric file. Knitted to its size this makes the same loops on the same needles by the
+/// same yarns in the same order, and the same transfers, counted from the left-most needle used. What
+/// vermiculation cannot say (drops of loops, splits, sliders, the hook, stitch values, a carrier that comes
+/// in again, ...; docs/notation.md has the list) is left out and told as a warning in `diagnostics` with its
+/// place; the text is knitted again and compared, so without a warning nothing of that was lost. A Program
+/// that came from a fabric file gets its repeat, size and edges back, not its comments. An error, and no
+/// text, for a programme that knits nothing or that is too wide or too long for a fabric file.
 std::string write_vermiculation(const Program& program, Diagnostics& diagnostics);
 
 }  // namespace loopwright

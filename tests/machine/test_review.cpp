@@ -2,6 +2,7 @@
 // it, and none on its neighbour that does not.
 #include <gmock/gmock.h>
 
+#include "machine/corpus.hpp"
 #include "machine/machine_of.hpp"
 #include "machine/review.hpp"
 
@@ -119,6 +120,30 @@ TEST(ReviewOfRails, carriers_of_one_rail_cannot_pass_each_other) {
   EXPECT_FALSE(says(said_of("1,L R;2", passing), Severity::warning, 7, "goes past"));
   const std::string apart = "in L\nin R\ntuck + f1 L\ntuck + f5 R\nout R\ntuck + f7 L\nout L\n";
   EXPECT_FALSE(says(said_of("1 L;R 2", apart), Severity::warning, 8, "goes past"));
+}
+
+// Real programmes drop hundreds of empty needles: that is one line. What is said stands at lines they have.
+TEST(ReviewOfTheCorpus, says_each_kind_once) {
+  SKIP_WITHOUT_CORPUS();
+  int spoken_of = 0, advised = 0;
+  for (const CorpusEntry& entry : corpus_knitout()) {
+    Diagnostics reading, said;
+    const std::string text = corpus_text(entry.file);
+    const Program program = read_knitout(text, reading);
+    const KnittingRecord record = run_machine(program, reading);
+    review(program, record, said);
+    const auto lines = std::count(text.begin(), text.end(), '\n') + 1;
+    for (const Diagnostic& d : said.list()) {
+      EXPECT_GT(d.at.line, 0) << d.message;
+      EXPECT_LE(d.at.line, lines) << d.message;
+    }
+    EXPECT_LE(said.list().size(), 14 + 3 * record.yarns.size()) << entry.file << said;
+    EXPECT_TRUE(said.ok());
+    spoken_of += said.list().empty() ? 0 : 1;
+    advised += said.advice();
+  }
+  EXPECT_GT(spoken_of, 60);
+  EXPECT_GT(advised, 60);
 }
 
 }  // namespace

@@ -460,6 +460,7 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
   if (gradient) {
     for (std::size_t i = 0; i < nodes; ++i)
       if (model_.held[i]) gradient->u[i] = {};
+    measure_forces_ = gradient->g;
     for (std::size_t k = 0; k < 3; ++k)
       if (!free[k]) gradient->g[k] = 0;
   }

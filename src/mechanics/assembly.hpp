@@ -36,6 +36,15 @@ class Assembly {
   // contact there. With friction this also takes down every contact's load, normal and place: until the next
   // call, energy() counts friction work from this state.
   EnergyParts hessian(const YarnState& state, Unknowns& gradient, BlockMatrix& hessian);
+  // dE/d(width, height, skew) at the last Hessian's state, for measures that are not free as well.
+  const Measures& measure_forces() const { return measure_forces_; }
+  // Elastic slip of every contact that carries load, to go on with: by segments and lattice shift.
+  struct FrictionContact {
+    SegmentPair pair;
+    Friction law;
+  };
+  const std::vector<FrictionContact>& history() const { return remembered_; }
+  void set_history(std::vector<FrictionContact> history) { remembered_ = std::move(history); }
   // Moves the friction history along: the cloth has gone from the last Hessian's state to this one.
   void accept(const YarnState& state);
 
@@ -53,12 +62,6 @@ class Assembly {
   YarnState moved(const YarnState& state, const Unknowns& step, double scale) const;
 
  private:
-  // A contact of two segments, as friction sees it; `pair` indexes pairs_.
-  struct FrictionContact {
-    SegmentPair pair;
-    Friction law;
-  };
-
   EnergyParts terms(const YarnState& state, Unknowns* gradient, BlockMatrix* hessian);
   Vec3 remembered_slip(const SegmentPair& pair) const;
   Vec3 relative_place(const FrictionContact& contact, const YarnState& state) const;
@@ -76,6 +79,7 @@ class Assembly {
   std::vector<Vec3> extended_;
   SamplePlaces places_;
   std::vector<std::array<double, 2>> fraction_;  // [extended]
+  Measures measure_forces_{};
 };
 
 }  // namespace loopwright

@@ -61,9 +61,10 @@ double next_shift(double shift, const TakenStep& taken, double energy, double sl
 }  // namespace
 
 NewtonResult newton(const YarnModel& model, YarnState& state, const NewtonOptions& options,
-                    double first_shift) {
+                    double first_shift, ContactHistory* history) {
   NewtonResult result;
   Assembly assembly(model);
+  if (history) assembly.set_history(*history);
   StepSolver solver(model);
   BlockMatrix hessian;
   Unknowns gradient, step;
@@ -74,6 +75,7 @@ NewtonResult newton(const YarnModel& model, YarnState& state, const NewtonOption
     const double range = outer + loose;
     assembly.update_pairs(state, range);
     result.energy = assembly.hessian(state, gradient, hessian);
+    result.measure_forces = assembly.measure_forces();
     result.residual = largest_force(gradient);
     result.measure_residual = largest_measure_force(gradient);
     result.converged = result.residual < options.tolerance && result.measure_residual < options.tolerance;
@@ -106,6 +108,7 @@ NewtonResult newton(const YarnModel& model, YarnState& state, const NewtonOption
     state = std::move(taken.state);
     assembly.accept(state);
   }
+  if (history) *history = assembly.history();
   result.shift = shift;
   result.factorisations = solver.factorisations;
   result.linear_iterations = solver.iterations;

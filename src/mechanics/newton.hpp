@@ -20,10 +20,14 @@ struct NewtonResult {
   double residual = 0, measure_residual = 0;
   int iterations = 0, linear_iterations = 0, factorisations = 0, crossings = 0;
   bool converged = false, stopped = false;
-  double shift = 0;  // the last shift, to start the next call from
+  double shift = 0;           // the last shift, to start the next call from
+  Measures measure_forces{};  // dE/d(width, height, skew), B/d^2, free or not
 };
 
+using ContactHistory = std::vector<Assembly::FrictionContact>;
+
+// `history`, if there is one, is where friction starts from and is left as it is at the end.
 NewtonResult newton(const YarnModel& model, YarnState& state, const NewtonOptions& options,
-                    double first_shift);
+                    double first_shift, ContactHistory* history = nullptr);
 
 }  // namespace loopwright

@@ -99,6 +99,8 @@ RelaxResult relax(const Fabric& fabric, const RelaxOptions& options) {
 
   NewtonResult newton_result;
   double shift = 1.0;
+  bool grown = !options.grow_in;  // from then on friction keeps its history
+  result.history = options.history;
   const auto run = [&](const YarnModel& model, double radius, double tolerance, int iterations) {
     NewtonOptions newton_options;
     newton_options.tolerance = tolerance;
@@ -108,7 +110,7 @@ RelaxResult relax(const Fabric& fabric, const RelaxOptions& options) {
       return options.on_progress(
           {radius < 1 ? "grow-in" : "relax", result.newton_iterations + i, residual, radius});
     };
-    newton_result = newton(model, state, newton_options, shift);
+    newton_result = newton(model, state, newton_options, shift, grown ? &result.history : nullptr);
     shift = std::max(newton_result.shift, 1e-3);
     result.newton_iterations += newton_result.iterations;
     result.linear_iterations += newton_result.linear_iterations;
@@ -135,27 +137,29 @@ RelaxResult relax(const Fabric& fabric, const RelaxOptions& options) {
     constexpr double left = 0.3, strain_a_stage = 0.15, enough_growth = 0.02;
     const double core = full.contact.core,
                  length_step = strain_a_stage / std::max(strain_a_stage, most_strain);
-    double own_length = 0, grown_before = -std::numeric_limits<double>::infinity();
+    double own_length = 0, core_before = -std::numeric_limits<double>::infinity();
     while (!result.stopped && result.newton_iterations < options.most_iterations) {
       const double nearest = smallest_clearance(full, state, 1.5);
       if (!(nearest > 1e-4)) {
         result.message = "yarns touch in the first geometry";
         break;
       }
-      const double grown = std::min(core, (nearest - left * outer) / (1 - left));
+      const double core_now = std::min(core, (nearest - left * outer) / (1 - left));
       // A knot drawn too tight opens only with more yarn.
-      if (grown == core || grown < grown_before + enough_growth) own_length += length_step;
-      if (grown == core && own_length >= 1) break;
-      grown_before = grown;
+      if (core_now == core || core_now < core_before + enough_growth) own_length += length_step;
+      if (core_now == core && own_length >= 1) break;
+      core_before = core_now;
       const double share = std::clamp(nearest / (core + left * (outer - core)), 0.0, 0.999);
-      run(drawn_in(build_yarn_model(fabric, with_core(model_options, grown)), std::min(own_length, 1.0)),
+      run(drawn_in(build_yarn_model(fabric, with_core(model_options, core_now)), std::min(own_length, 1.0)),
           share, 0.1, 12);
     }
   }
+  grown = true;
   if (!result.stopped && result.message.empty()) run(full, 1, options.tolerance, options.most_iterations);
 
   result.fabric = with_state(fabric, state);
   result.plates = model_options.plates;
+  result.measure_forces = newton_result.measure_forces;
   result.energy = newton_result.energy;
   result.residual = newton_result.residual;
   result.measure_residual = newton_result.measure_residual;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "mechanics/assembly.hpp"
+#include "mechanics/newton.hpp"
 #include "mechanics/yarn_model.hpp"
 
 namespace loopwright {
@@ -25,6 +25,7 @@ struct RelaxOptions {
   // cloth curls otherwise. Negative: no plates. Periodic cells need none. `model.plates`, if they have a
   // stiffness, stand where they are: a piece that is gone on with keeps its own.
   double plate_room = 0.25;
+  ContactHistory history;  // of the run that this one goes on from; empty: contacts start unloaded
   // Called after every iteration; returning false stops the run (what was reached is returned, not
   // converged).
   std::function<bool(const RelaxProgress&)> on_progress;
@@ -36,7 +37,9 @@ struct RelaxResult {
   double residual = 0;          // largest force on a control point, B/d^2
   double measure_residual = 0;  // largest dE/d(width or height) of one wale or course, B/d^2
   int newton_iterations = 0, linear_iterations = 0, factorisations = 0;
-  FlatPlates plates;  // between which a finite piece lies; stiffness 0: none
+  Measures measure_forces{};  // dE/d(width, height, skew), B/d^2, of measures that are held as well
+  ContactHistory history;     // friction's, for a run that goes on from here
+  FlatPlates plates;          // between which a finite piece lies; stiffness 0: none
   bool converged = false, stopped = false;
   int pass_throughs = 0;  // steps that could not be certified free of crossings: 0, or the result is broken
   std::string message;    // why it ended, in words

@@ -1,0 +1,124 @@
+#include "experiments/stretch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "geometry/interlacing.hpp"
+
+namespace loopwright {
+namespace {
+
+void check_test(const Fabric& fabric, const StretchTest& test) {
+  if (test.turning_points.empty()) throw std::invalid_argument("a stretch test needs a strain to go to");
+  for (const double strain : test.turning_points)
+    if (!(strain > -0.9 && strain <= 5))
+      throw std::invalid_argument("a strain must lie between -0.9 and 5, that is -90 % and 500 %");
+  if (!(test.largest_step > 0)) throw std::invalid_argument("the strain step must be a positive number");
+  if (!(fabric.width > 0) || !(fabric.height > 0))
+    throw std::invalid_argument("only a periodic cell or a piece with a frame can be stretched");
+  if (test.direction == StretchDirection::shear && !fabric.periodic)
+    throw std::invalid_argument("shear is for periodic cells");
+}
+
+// All strains on the way: equal steps between turning points, none larger than the largest step.
+std::vector<double> strains_on_the_way(const StretchTest& test) {
+  std::vector<double> all;
+  double from = 0;
+  for (const double to : test.turning_points) {
+    const int steps =
+        std::max(1, static_cast<int>(std::ceil(std::abs(to - from) / test.largest_step - 1e-9)));
+    for (int k = 1; k <= steps; ++k) all.push_back(from + (to - from) * k / steps);
+    from = to;
+  }
+  return all;
+}
+
+// The fabric with other measures; its points go along affinely.
+Fabric deformed(const Fabric& fabric, double width, double height, double skew) {
+  Fabric result = fabric;
+  for (FabricYarn& yarn : result.yarns)
+    for (Vec3& p : yarn.control_points) {
+      const double eta = p.y / fabric.height, xi = (p.x - eta * fabric.skew) / fabric.width;
+      p.x = xi * width + eta * skew;
+      p.y = eta * height;
+    }
+  result.width = width, result.height = height, result.skew = skew;
+  return result;
+}
+
+FreeMeasures free_measures(const StretchTest& test, const FreeMeasures& usual) {
+  FreeMeasures free{false, false, false};
+  if (test.direction == StretchDirection::course) free.height = test.free_across && usual.height;
+  if (test.direction == StretchDirection::wale) free.width = test.free_across && usual.width;
+  if (test.direction == StretchDirection::shear && test.free_across) {
+    free.width = usual.width;
+    free.height = usual.height;
+  }
+  return free;
+}
+
+}  // namespace
+
+StretchResult stretch(const RelaxResult& relaxed, const RelaxOptions& options, const StretchTest& test,
+                      double bend_stiffness, const std::function<bool(const StretchPoint&)>& on_point) {
+  const Fabric& start = relaxed.fabric;
+  check_test(start, test);
+  const double d = start.diameter_mm * 1e-3;                        // m
+  const double force_unit = bend_stiffness / (d * d);               // B/d^2 in N
+  const double width = start.width * d, height = start.height * d;  // m
+  double energy_at_rest = relaxed.energy.total() - relaxed.energy.friction;
+
+  StretchResult result;
+  const auto add_point = [&](const RelaxResult& at) {
+    StretchPoint point;
+    point.course_strain = at.fabric.width / start.width - 1;
+    point.wale_strain = at.fabric.height / start.height - 1;
+    point.shear = (at.fabric.skew - start.skew) / start.height;
+    point.course_force = at.measure_forces[0] * force_unit / height;
+    point.wale_force = at.measure_forces[1] * force_unit / width;
+    point.shear_force = at.measure_forces[2] * force_unit / height * (start.height / start.width);
+    point.energy =
+        (at.energy.total() - at.energy.friction - energy_at_rest) * bend_stiffness / d / (width * height);
+    point.residual = at.residual;
+    point.newton_iterations = at.newton_iterations;
+    point.pass_throughs = at.pass_throughs;
+    point.converged = at.converged;
+    const InterlacingCheck check = check_interlacings(at.fabric);
+    point.interlacings = check.expected, point.interlacings_intact = check.intact;
+    point.min_clearance = min_clearance(at.fabric).distance;
+    result.points.push_back(point);
+    return !on_point || on_point(point);
+  };
+
+  RelaxOptions held = options;
+  held.grow_in = false;
+  held.model.free = free_measures(test, options.model.free);
+  held.model.plates = relaxed.plates;
+  held.history = relaxed.history;
+  result.fabric = start;
+  // The rest state again, with the measures held: its forces are the zero of the test.
+  RelaxResult at = relax(start, held);
+  energy_at_rest = at.energy.total() - at.energy.friction;
+  if (!add_point(at)) result.stopped = true;
+  for (const double strain : strains_on_the_way(test)) {
+    if (result.stopped || at.stopped) break;
+    const Fabric& now = at.fabric;
+    const bool course =
+        test.direction == StretchDirection::course || test.direction == StretchDirection::both;
+    const bool wale = test.direction == StretchDirection::wale || test.direction == StretchDirection::both;
+    const bool shear = test.direction == StretchDirection::shear;
+    const Fabric moved = deformed(now, course ? start.width * (1 + strain) : now.width,
+                                  wale ? start.height * (1 + strain) : now.height,
+                                  shear ? start.skew + strain * start.height : now.skew);
+    held.history = std::move(at.history);
+    at = relax(moved, held);
+    if (!add_point(at)) result.stopped = true;
+  }
+  result.stopped = result.stopped || at.stopped;
+  result.fabric = at.fabric;
+  return result;
+}
+
+}  // namespace loopwright

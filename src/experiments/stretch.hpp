@@ -1,0 +1,47 @@
+// Stretch test of a periodic cell or of a held piece: its width, its height, both or its shear are prescribed
+// step by step, the cloth comes to rest at each, and the forces that the frame carries are read off.
+#pragma once
+#include <functional>
+#include <vector>
+
+#include "mechanics/relax.hpp"
+
+namespace loopwright {
+
+enum class StretchDirection { course, wale, both, shear };
+
+struct StretchTest {
+  StretchDirection direction = StretchDirection::course;  // course: the width grows, wale: the height
+  // Strains to go to, in order, as shares of the size at the start (shear: skew over height); each is reached
+  // in steps of at most `largest_step`, and every step is a point of the result.
+  std::vector<double> turning_points;
+  double largest_step = 0.02;
+  bool free_across = true;  // course and wale: the other size follows, so that its force is zero
+};
+
+struct StretchPoint {
+  double course_strain = 0, wale_strain = 0, shear = 0;
+  // Membrane force in the frame's directions per length of the relaxed cloth, N/m (first Piola-Kirchhoff): on
+  // a width of cloth for wale_force, on a height for course_force and shear_force.
+  double course_force = 0, wale_force = 0, shear_force = 0;
+  double energy = 0;  // stored in the cloth per area of the relaxed cloth, J/m^2
+  double residual = 0;
+  int newton_iterations = 0, pass_throughs = 0, interlacings_intact = 0, interlacings = 0;
+  double min_clearance = 0;  // d
+  bool converged = false;
+};
+
+struct StretchResult {
+  std::vector<StretchPoint> points;  // the first: the cloth at rest before the test
+  Fabric fabric;                     // as it is at the last point
+  bool stopped = false;
+};
+
+// `relaxed`: at rest with `options`; `history`: of friction there. Friction keeps its history through the
+// test, so that loading and unloading differ. `bend_stiffness`: B of the reference yarn in N m^2; it turns
+// the model's forces into newtons. `on_point` is called after every point; false stops the test. Throws
+// std::invalid_argument for strains that cannot be: not finite, -0.9 or less, above 5, no turning point.
+StretchResult stretch(const RelaxResult& relaxed, const RelaxOptions& options, const StretchTest& test,
+                      double bend_stiffness, const std::function<bool(const StretchPoint&)>& on_point = {});
+
+}  // namespace loopwright

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <set>
 
 #include "notation/fabric_headers.hpp"
@@ -60,6 +61,7 @@ class Decompiler {
         add_transfers(passes, i, wanted);
     }
     tell_idle_end();
+    narrow_rows();
     fold_lines();
     return std::move(result_);
   }
@@ -193,6 +195,7 @@ class Decompiler {
                    (is_front(needle.bed) ? held(other) == 0 || held(needle) > 0 : held(other) == 0);
     }
     if (wanted) put_letters(pass, met, one_each);
+    if (wanted && !one_each) put_missed(pass, met, source.racking);
     // what takes the carrier past needles alone says so by its direction
     if (wanted && !pass.knits()) pass.direction = first.direction;
     for (std::size_t i = source.begin; i < source.end; ++i) {
@@ -248,6 +251,21 @@ class Decompiler {
     const auto forms = [](const Cell& cell) { return cell.letter != '-' && cell.letter != '.'; };
     for (std::size_t w = 0; w < pass.rear.size() && !result_.gating; ++w)
       if (forms(pass.cells[w]) && forms(pass.rear[w])) result_.gating = Gating::opposite;
+  }
+
+  // A needle that keeps its loops while the one that it faces works is missed, not inactive; the programme
+  // has no word for it.
+  void put_missed(Pass& pass, const std::vector<Meeting>& met, double racking) {
+    if (racking != std::floor(racking)) return;
+    const int offset = static_cast<int>(racking);
+    for (const Meeting& each : met) {
+      if (each.letter == '.') continue;
+      const bool front = is_front(each.needle.bed);
+      const Needle idle{front ? Bed::back : Bed::front, each.needle.index + (front ? -offset : offset)};
+      if (!inside(idle) || held(idle) == 0) continue;
+      Cell& cell = (front ? pass.rear : pass.cells)[place(idle)];
+      if (cell.letter == '-') cell.letter = '.';
+    }
   }
 
   void add_transfers(const std::vector<ProgramPass>& passes, std::size_t index, bool wanted) {
@@ -368,6 +386,29 @@ class Decompiler {
                     "what follows the last course is not in the notation: transfers, moves of a carrier");
       result_.lines.pop_back();
     }
+  }
+
+  // Rows of a repeat are as wide as they need be: `g` in a cable of eight wales. All stay as they are where
+  // the repeat would lose its width.
+  void narrow_rows() {
+    const std::vector<CourseLine> wide = result_.lines;
+    std::size_t wales = 1;
+    for (CourseLine& line : result_.lines) {
+      for (Pass& pass : line.passes) {
+        for (std::vector<Cell>* row : {&pass.cells, &pass.rear}) {
+          std::size_t unit = 1;
+          const auto repeats = [&] {
+            for (std::size_t i = unit; i < row->size(); ++i)
+              if ((*row)[i].letter != (*row)[i - unit].letter) return false;
+            return true;
+          };
+          while (unit < row->size() && (row->size() % unit != 0 || !repeats())) ++unit;
+          row->resize(std::min(unit, row->size()));
+          wales = std::lcm(wales, std::max<std::size_t>(row->size(), 1));
+        }
+      }
+    }
+    if (wales != static_cast<std::size_t>(extent_.wales)) result_.lines = wide;
   }
 
   // Brackets round runs of lines that repeat.

@@ -47,15 +47,19 @@ void study(const char* file) {
   std::vector<CourseMeasure> courses = course_measures(graph, layout);
   std::erase_if(courses, [](const CourseMeasure& c) { return c.stitches < 3; });
   double least = 1e9, most = 0, mean = 0;
+  int ordinary = 0;
   for (const CourseMeasure& c : courses) {
     const double share = c.width / l / (c.stitches - 1) / 0.2456;
+    if (share > 1.5) continue;  // on every other needle
+    ++ordinary;
     least = std::min(least, share), most = std::max(most, share);
-    mean += share / static_cast<double>(courses.size());
+    mean += share;
   }
   std::printf(
-      "  %zu courses of 3 stitches and more: width over rest width of their stitches %.2f to %.2f, mean "
-      "%.3f\n",
-      courses.size(), least, most, mean);
+      "  %zu courses of 3 stitches and more, %d of them on needles side by side: width over rest width of "
+      "their "
+      "stitches %.2f to %.2f, mean %.3f\n",
+      courses.size(), ordinary, ordinary > 0 ? least : 0, most, ordinary > 0 ? mean / ordinary : 0);
   for (std::size_t k = 0; k < 8 && !courses.empty(); ++k) {
     const CourseMeasure& c = courses[k * (courses.size() - 1) / 7];
     std::printf("    pass %4d: %3d stitches, %6.1f mm wide\n", c.pass, c.stitches, c.width * mm);

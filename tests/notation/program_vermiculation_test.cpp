@@ -91,12 +91,16 @@ TEST(ProgramAsVermiculation, EveryExampleOfTheLibraryComesBack) {
     EXPECT_EQ(again.yarns.front().material, program.yarns.front().material);
     // what is written in this way stays as it is
     EXPECT_EQ(write_vermiculation(again, lost), written);
-    if (letters(written) == letters(text)) ++same_letters;
+    if (letters(written) == letters(text))
+      ++same_letters;
+    else
+      std::cout << "[   INFO   ] " << entry.path().filename() << " comes back as\n" << letters(written);
     ++files;
   }
   EXPECT_GE(files, 26);
-  // some say a thing in two ways: `v-` for `v.`, a width twice as large as needed
-  EXPECT_GE(same_letters, 12);
+  // some say what need not be said: a racking of 0, a direction that the carrier takes anyway, transfers that
+  // the next course implies
+  EXPECT_GE(same_letters, 19);
 }
 
 TEST(ProgramAsVermiculation, RandomNotationsMakeTheSameOperations) {
@@ -136,7 +140,7 @@ TEST(ProgramAsVermiculation, KnitoutBecomesLines) {
   ASSERT_TRUE(diagnostics.ok());
   EXPECT_EQ(write_vermiculation(program, lost),
             ";!vermiculation-1\n;;Gauge: 15\n;;Carriers: 3\n;;Edges: free\n"
-            "gg\ngg\nee\nR1 T.\n-- / -e\n< -g / --\ng-\n");
+            "g\ng\ne\nR1 T.\n-. / -e\n< -g / -.\ng-\n");
 }
 
 TEST(ProgramAsVermiculation, WhatCannotBeSaidIsToldWithItsPlace) {

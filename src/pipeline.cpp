@@ -160,6 +160,8 @@ RelaxOptions relax_options(const State& state) {
   material.contact.stiffness = number("contact_stiffness");
   material.contact.exponent = number("contact_exponent");
   material.friction = number("friction");
+  if (state.numbers.contains("reference_bend_N_m2"))
+    material.reference_bend_N_m2 = number("reference_bend_N_m2");
   if (state.numbers.contains("plate_stiffness"))
     options.model.plates = {number("plate_stiffness"), number("plate_low"), number("plate_high")};
   options.grow_in = number("radius") < 1;
@@ -234,6 +236,7 @@ State saved_state(const Fabric& fabric, const RelaxOptions& options, double radi
                    {"friction", material.friction},
                    {"framed", is_framed(options) ? 1 : 0},
                    {"radius", radius}};
+  if (material.reference_bend_N_m2 > 0) state.numbers["reference_bend_N_m2"] = material.reference_bend_N_m2;
   return state;
 }
 

@@ -41,6 +41,18 @@ struct BuildCommand {
 };
 int run(const BuildCommand& command);
 
+// A stretch test. Strains as shares of the relaxed size, in the order in which they are gone to.
+struct StretchCommand {
+  std::string file, out, csv, plot;
+  PieceRequest piece{.start_from_cell = true};
+  std::string direction = "course";  // course, wale, both, shear
+  std::vector<double> to{0.3};
+  double step = 0.02;
+  bool held_across = false;
+  int threads = 0;  // 0: all
+};
+int run(const StretchCommand& command);
+
 struct PictureRequest {
   std::string view = "front";
   std::string size = "1600x1200";  // pixels

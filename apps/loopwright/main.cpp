@@ -18,6 +18,7 @@ struct Commands {
   ConvertCommand convert;
   BuildCommand build;
   RelaxCommand relax;
+  StretchCommand stretch;
   RenderCommand render;
   AnimateCommand animate;
   MeasureCommand measure;
@@ -161,6 +162,32 @@ void add_commands(CLI::App& app, Commands& commands, Action& action) {
   relax->add_option("--most-iterations", commands.relax.most_iterations, "Stop after so many Newton steps")
       ->check(CLI::Range(1, 1'000'000));
   relax->callback([&] { action = [&] { return run(commands.relax); }; });
+
+  CLI::App* stretch =
+      app.add_subcommand("stretch", "Pull the relaxed cloth and read off the forces of its frame");
+  stretch->add_option("FILE", commands.stretch.file, "Fabric or knitout file, or a saved state")->required();
+  add_piece_options(*stretch, commands.stretch.piece);
+  stretch->add_option("--direction", commands.stretch.direction, "What is prescribed")
+      ->check(CLI::IsMember({"course", "wale", "both", "shear"}))
+      ->capture_default_str();
+  stretch->add_option("--to", commands.stretch.to, "Strains to go to, in order: 0.3 0 loads and unloads")
+      ->capture_default_str();
+  stretch->add_option("--step", commands.stretch.step, "Largest step of strain")
+      ->check(CLI::Range(1e-4, 0.2))
+      ->capture_default_str();
+  stretch->add_flag("--held-across", commands.stretch.held_across, "The other size stays as it is");
+  stretch->add_option("--csv", commands.stretch.csv, "Write the points as CSV, - for standard output")
+      ->type_name("FILE");
+  stretch->add_option("--plot", commands.stretch.plot, "Draw force over strain")->type_name("SVG");
+  stretch->add_option("-o,--out", commands.stretch.out, "Write the cloth as it is at the last point")
+      ->type_name("OUT");
+  stretch->add_option("--friction", commands.stretch.piece.friction, "Friction coefficient of yarn on yarn")
+      ->type_name("MU")
+      ->check(CLI::Range(0.0, 5.0));
+  stretch->add_option("--threads", commands.stretch.threads, "Threads to use, 0 for all")
+      ->check(CLI::Range(0, 4096))
+      ->capture_default_str();
+  stretch->callback([&] { action = [&] { return run(commands.stretch); }; });
 
   CLI::App* render =
       app.add_subcommand("render", "Draw a picture of a file's first geometry or of a saved state");

@@ -62,9 +62,13 @@ FreeMeasures free_measures(const StretchTest& test, const FreeMeasures& usual) {
 }  // namespace
 
 StretchResult stretch(const RelaxResult& relaxed, const RelaxOptions& options, const StretchTest& test,
-                      double bend_stiffness, const std::function<bool(const StretchPoint&)>& on_point) {
+                      const std::function<bool(const StretchPoint&)>& on_point) {
   const Fabric& start = relaxed.fabric;
   check_test(start, test);
+  const double bend_stiffness = options.model.material.reference_bend_N_m2;
+  if (!(bend_stiffness > 0))
+    throw std::invalid_argument(
+        "forces need the yarn's bend stiffness: name a material or give the yarn its data");
   const double d = start.diameter_mm * 1e-3;                        // m
   const double force_unit = bend_stiffness / (d * d);               // B/d^2 in N
   const double width = start.width * d, height = start.height * d;  // m

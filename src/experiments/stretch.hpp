@@ -42,6 +42,6 @@ struct StretchResult {
 // the model's forces into newtons. `on_point` is called after every point; false stops the test. Throws
 // std::invalid_argument for strains that cannot be: not finite, -0.9 or less, above 5, no turning point.
 StretchResult stretch(const RelaxResult& relaxed, const RelaxOptions& options, const StretchTest& test,
-                      double bend_stiffness, const std::function<bool(const StretchPoint&)>& on_point = {});
+                      const std::function<bool(const StretchPoint&)>& on_point = {});
 
 }  // namespace loopwright

@@ -102,7 +102,7 @@ NewtonResult newton(const YarnModel& model, YarnState& state, const NewtonOption
                                taken.safe.pair_ratio * taken.safe.scale < 0.4;
     loose = short_sighted ? std::min(2 * loose, most_loose) : std::max(least_loose, 0.7 * loose);
     // The step as it was taken must be certified; one that is not counts as a possible pass-through.
-    if (!(taken.safe.pair_ratio * taken.scale < 1) ||
+    if (!taken.safe.surely_apart || !(taken.safe.pair_ratio * taken.scale < 1) ||
         !(taken.safe.loose_motion * taken.scale < 0.5 * (range - outer)))
       ++result.crossings;
     state = std::move(taken.state);

@@ -53,6 +53,9 @@ double smallest_clearance(const YarnModel& model, const YarnState& state, double
 // The yarn while it grows in: its shell is whole, its core is smaller than it will be.
 ModelOptions with_core(ModelOptions options, double core) {
   options.material.contact.core = core;
+  // Without its core a soft shell would let yarns be pressed together until nothing tells them apart.
+  constexpr double least_growing_stiffness = 100;
+  options.material.contact.stiffness = std::max(options.material.contact.stiffness, least_growing_stiffness);
   // A frictionless yarn can slide into rest states that it cannot leave (moss folded into itself); rubbing
   // while it grows keeps it where the first geometry put it. Afterwards the yarn's own friction counts.
   constexpr double least_growing_friction = 0.3;
@@ -134,7 +137,9 @@ RelaxResult relax(const Fabric& fabric, const RelaxOptions& options) {
     };
     // The core for which the nearest pieces of yarn still have `left` of the shell between them; below zero
     // where they nearly touch: then the law is finite everywhere, and only the safe step parts the yarns.
-    constexpr double left = 0.3, strain_a_stage = 0.15, enough_growth = 0.02;
+    constexpr double left = 0.3, strain_a_stage = 0.15, enough_growth = 0.02, least_gap = 0.02;
+    constexpr int most_stalls = 4;
+    int stalls = 0;
     const double core = full.contact.core,
                  length_step = strain_a_stage / std::max(strain_a_stage, most_strain);
     double own_length = 0, core_before = -std::numeric_limits<double>::infinity();
@@ -148,6 +153,13 @@ RelaxResult relax(const Fabric& fabric, const RelaxOptions& options) {
       // A knot drawn too tight opens only with more yarn.
       if (core_now == core || core_now < core_before + enough_growth) own_length += length_step;
       if (core_now == core && own_length >= 1) break;
+      // Yarn pressed nearer than the growing law wishes, at its own length: soft yarn in tight loops lies
+      // like that, and the true law takes over if no core is in another.
+      if (own_length >= 1 && core_now < core_before + enough_growth && ++stalls > most_stalls) {
+        if (!(nearest > core + least_gap * (outer - core)))
+          result.message = "jammed: the yarn is too thick for the length of its loops";
+        break;
+      }
       core_before = core_now;
       const double share = std::clamp(nearest / (core + left * (outer - core)), 0.0, 0.999);
       run(drawn_in(build_yarn_model(fabric, with_core(model_options, core_now)), std::min(own_length, 1.0)),

@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "base/parallel.hpp"
 
 namespace loopwright {
 namespace {
 
+// Two sticks of 0.18 d on yarn bent to a radius of 0.5 d stray by 2 x 0.18^2 / (8 x 0.5) d from it.
+constexpr double bent_away = 0.016;
 constexpr double smallest_ratio = 0.05;  // of motion to distance: less than this never cuts a step
 
 // A step taken apart into an affine map x -> x + T x + t of all space and what is left.
@@ -123,7 +126,7 @@ SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnS
   constexpr int pairs_per_chunk = 4096;
   const int chunks = static_cast<int>((pairs.size() + pairs_per_chunk - 1) / pairs_per_chunk);
   struct Worst {
-    double ratio2 = smallest_ratio * smallest_ratio;
+    double ratio2 = smallest_ratio * smallest_ratio, gap2 = std::numeric_limits<double>::infinity();
     int a = -1, b = -1;
   };
   std::vector<Worst> worst(static_cast<std::size_t>(chunks));
@@ -166,7 +169,11 @@ SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnS
           if (d2 > 9 * halves * halves && 2 * (r2 + turns * turns) <= 0.44 * w.ratio2 * d2) continue;
           const Stick &one = stick[i0 + i], &other = stick[j0 + j];
           const double motion = std::sqrt(r2) + norm(one.turn) + norm(other.turn);
-          const double room2 = std::max(stick_distance2({dx, dy, dz}, one.half, other.half), 1e-12);
+          const double gap2 = stick_distance2({dx, dy, dz}, one.half, other.half);
+          w.gap2 = std::min(w.gap2, gap2);
+          // Yarn bends away from its sticks: see `bent_away`. Below twice that half the gap is left for it.
+          const double gap = std::sqrt(gap2), room = std::max({gap - bent_away, 0.5 * gap, 1e-9});
+          const double room2 = room * room;
           if (motion * motion > w.ratio2 * room2) {
             w.ratio2 = motion * motion / room2;
             w.a = pair.a;
@@ -179,6 +186,7 @@ SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnS
 
   SafeStep result;
   double ratio2 = smallest_ratio * smallest_ratio;
+  for (const Worst& w : worst) result.surely_apart = result.surely_apart && w.gap2 > bent_away * bent_away;
   for (const Worst& w : worst)
     if (w.ratio2 > ratio2) {
       ratio2 = w.ratio2;

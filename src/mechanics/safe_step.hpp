@@ -16,6 +16,9 @@ struct SafeStep {
   double pair_ratio = 0;    // relative motion over distance of the worst pair at scale 1
   double loose_motion = 0;  // largest motion beyond the best affine map at scale 1, in d
   int worst_a = -1, worst_b = -1;
+  // False where yarns are nearer than sticks can tell from touching (0.016 d): the step is not certified
+  // then.
+  bool surely_apart = true;
 };
 
 // `assembly` has its pairs within `range` of this state. `share` (below 1): part of a distance that may be

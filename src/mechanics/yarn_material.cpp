@@ -21,6 +21,7 @@ YarnMaterial yarn_material(const YarnData& yarn, double diameter_mm) {
   YarnMaterial material;
   if (yarn.bend_stiffness_mN_mm2) {
     const double B = positive(*yarn.bend_stiffness_mN_mm2, "bend stiffness") * 1e-3;  // N mm^2
+    material.reference_bend_N_m2 = B * 1e-6;
     if (yarn.stretch_stiffness_cN)
       material.stretch_stiffness =
           positive(*yarn.stretch_stiffness_cN, "stretch stiffness") * 1e-2 * d * d / B;

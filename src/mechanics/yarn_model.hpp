@@ -28,6 +28,8 @@ struct YarnMaterial {
   double bend_stiffness = 1;        // B of this yarn over B of the reference yarn
   ContactLaw contact;               // outer diameter 1 for the reference yarn
   double friction = 0;              // coefficient of yarn on yarn; 0: frictionless
+  // B of the reference yarn in N m^2, by which the model's forces become newtons; 0: not known.
+  double reference_bend_N_m2 = 0;
 };
 
 struct YarnModel {

@@ -28,7 +28,7 @@ double visible_time(const LoopModel& model) {
   NetKernel kernel(model.net);
   NetState state = state_at_rest(model.start);
   SettleOptions options;
-  options.tolerance = 2e-3;
+  options.tolerance = 1e-4;
   options.on_check = [](const NetState&, int) { return !interrupted(); };
   settle(kernel, model.net, state, options);
   return std::max(state.time, 10 * kernel.stable_step());
@@ -109,7 +109,7 @@ int run(const AnimateCommand& command) {
   // whether the last frame is the stable state
   NetState last = moments.back();
   SettleOptions look;
-  look.tolerance = 5e-3;
+  look.tolerance = 3e-4;
   look.most_steps = 0;
   result.settled = settle(kernel, model->net, last, look).settled;
   std::cout << command.file << ": " << series.size() << " frames, " << summary(*model, moments.back(), result)

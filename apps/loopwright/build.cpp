@@ -1,14 +1,47 @@
 // loopwright build: the first geometry, before mechanics.
+#include <iostream>
+#include <stdexcept>
+
 #include "files.hpp"
+#include "geometry/fit_fabric.hpp"
+#include "loop_scale/relaxed_layout.hpp"
 #include "outputs/write_fabric.hpp"
 
 namespace loopwright {
+namespace {
+
+// The whole piece where the loop-scale model comes to rest, instead of the flat layout.
+std::optional<Piece> read_relaxed_layout(const BuildCommand& command) {
+  if (command.piece.periodic || command.piece.window)
+    throw std::invalid_argument("--layout loop is for whole pieces, not for a cell or window");
+  if (names_a_state(command.file))
+    throw std::invalid_argument(command.file + ": a layout is found from a notation, not from a saved state");
+  Diagnostics diagnostics(command.file);
+  const Knitting knitting = knit(command.file, command.piece, diagnostics);
+  std::optional<Piece> piece;
+  if (diagnostics.ok()) {
+    try {
+      const RelaxedLayout layout = relaxed_layout(knitting.graph, knitting.program);
+      Fabric fabric = fit_fabric(layout.curves, knitting.graph, layout.model.geometry);
+      fabric.name = knitting.program.settings.name;
+      const RelaxOptions options = relax_options(fabric, knitting.program, command.piece);
+      piece = Piece{saved_state(fabric, options, 0), options};
+    } catch (const std::invalid_argument& fault) {
+      diagnostics.error({}, fault.what());
+    }
+  }
+  std::cerr << diagnostics;
+  return piece;
+}
+
+}  // namespace
 
 int run(const BuildCommand& command) {
   fabric_format(command.out);
   require_writable(command.out);
   require_writable(command.json);
-  const std::optional<Piece> piece = read_piece(command.file, command.piece);
+  const std::optional<Piece> piece =
+      command.layout == "loop" ? read_relaxed_layout(command) : read_piece(command.file, command.piece);
   if (!piece) return exit_error;
   const Assessment assessment = assess(piece->state.fabric);
   write_fabric(command.out, piece->state);

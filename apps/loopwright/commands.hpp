@@ -37,6 +37,7 @@ int run(const ConvertCommand& command);
 
 struct BuildCommand {
   std::string file, out, json;
+  std::string layout = "flat";  // flat, or loop: at rest at loop scale
   PieceRequest piece;
 };
 int run(const BuildCommand& command);

@@ -127,6 +127,9 @@ void add_commands(CLI::App& app, Commands& commands, Action& action) {
       ->type_name("OUT")
       ->required();
   add_piece_options(*build, commands.build.piece);
+  build->add_option("--layout", commands.build.layout, "Where loops lie: flat, or at rest in the loop model")
+      ->check(CLI::IsMember({"flat", "loop"}))
+      ->capture_default_str();
   build
       ->add_option("--json", commands.build.json,
                    "Write measurements as JSON to a file, - for standard output")

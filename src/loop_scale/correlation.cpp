@@ -1,6 +1,7 @@
 #include "loop_scale/correlation.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <stdexcept>

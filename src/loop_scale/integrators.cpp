@@ -1,6 +1,7 @@
 #include "loop_scale/integrators.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <set>
 #include <stdexcept>
 
@@ -268,7 +267,6 @@ std::vector<std::int32_t> masses_at(const YarnGraph& graph, const BindingPoints&
                                     const std::vector<Vec3>& start, PiecePlace place) {
   // Ends of the runs of neighbours in a course, from left to right.
   std::set<std::int32_t> lefts, rights, tops, bottoms;
-  std::map<int, std::int32_t> right_of_course;
   for (const GraphYarn& yarn : graph.yarns)
     for (std::size_t first = 0; first < yarn.loops.size();) {
       std::size_t last = first;
@@ -280,7 +278,6 @@ std::vector<std::int32_t> masses_at(const YarnGraph& graph, const BindingPoints&
       if (start[at(a)].x > start[at(b)].x) std::swap(a, b);
       lefts.insert(a);
       rights.insert(b);
-      right_of_course[graph.loop(yarn.loops[first]).pass] = b;
       first = last + 1;
     }
   for (std::size_t k = 0; k < graph.loops.size(); ++k) {

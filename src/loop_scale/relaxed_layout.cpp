@@ -102,6 +102,14 @@ RelaxedLayout relaxed_layout(const YarnGraph& graph, const Program& program, con
   NetKernel kernel(model.net);
   layout.result = settle(kernel, model.net, layout.state, settling);
   layout.curves = curves_at(model, layout.state);
+  // the size where it came to rest, as the first geometry counts it
+  const auto reach = [](const std::vector<double>& values) {
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    return *high - *low;
+  };
+  YarnCurves& curves = layout.curves;
+  if (curves.wales > 1) curves.width = reach(layout.state.x) * curves.wales / (curves.wales - 1);
+  curves.height = reach(layout.state.y);  // from the first lower to the last upper binding points
   return layout;
 }
 

@@ -137,8 +137,9 @@ RelaxResult relax(const Fabric& fabric, const RelaxOptions& options) {
     };
     // The core for which the nearest pieces of yarn still have `left` of the shell between them; below zero
     // where they nearly touch: then the law is finite everywhere, and only the safe step parts the yarns.
-    constexpr double left = 0.3, strain_a_stage = 0.15, enough_growth = 0.02, least_gap = 0.02;
-    constexpr int most_stalls = 4;
+    constexpr double left = 0.3, strain_a_stage = 0.15, enough_growth = 0.02, least_gap = 0.02,
+                     any_growth = 1e-4;
+    constexpr int most_stalls = 10;
     int stalls = 0;
     const double core = full.contact.core,
                  length_step = strain_a_stage / std::max(strain_a_stage, most_strain);
@@ -155,7 +156,8 @@ RelaxResult relax(const Fabric& fabric, const RelaxOptions& options) {
       if (core_now == core && own_length >= 1) break;
       // Yarn pressed nearer than the growing law wishes, at its own length: soft yarn in tight loops lies
       // like that, and the true law takes over if no core is in another.
-      if (own_length >= 1 && core_now < core_before + enough_growth && ++stalls > most_stalls) {
+      if (core_now > core_before + any_growth) stalls = 0;
+      if (own_length >= 1 && ++stalls > most_stalls) {
         if (!(nearest > core + least_gap * (outer - core)))
           result.message = "jammed: the yarn is too thick for the length of its loops";
         break;

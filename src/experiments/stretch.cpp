@@ -72,19 +72,27 @@ StretchResult stretch(const RelaxResult& relaxed, const RelaxOptions& options, c
   const double d = start.diameter_mm * 1e-3;                        // m
   const double force_unit = bend_stiffness / (d * d);               // B/d^2 in N
   const double width = start.width * d, height = start.height * d;  // m
-  double energy_at_rest = relaxed.energy.total() - relaxed.energy.friction;
+
+  RelaxOptions held = options;
+  held.grow_in = false;
+  held.model.free = free_measures(test, options.model.free);
+  held.model.plates = relaxed.plates;
+  held.history = relaxed.history;
+  // The rest state again, with the measures held: its energy is the zero of the test.
+  RelaxResult at = relax(start, held);
+  const auto stored = [](const RelaxResult& r) { return r.energy.total() - r.energy.friction; };
+  const double energy_at_rest = stored(at);
 
   StretchResult result;
-  const auto add_point = [&](const RelaxResult& at) {
+  const auto add_point = [&] {
     StretchPoint point;
     point.course_strain = at.fabric.width / start.width - 1;
     point.wale_strain = at.fabric.height / start.height - 1;
     point.shear = (at.fabric.skew - start.skew) / start.height;
     point.course_force = at.measure_forces[0] * force_unit / height;
     point.wale_force = at.measure_forces[1] * force_unit / width;
-    point.shear_force = at.measure_forces[2] * force_unit / height * (start.height / start.width);
-    point.energy =
-        (at.energy.total() - at.energy.friction - energy_at_rest) * bend_stiffness / d / (width * height);
+    point.shear_force = at.measure_forces[2] * force_unit / width;
+    point.energy = (stored(at) - energy_at_rest) * bend_stiffness / d / (width * height);
     point.residual = at.residual;
     point.newton_iterations = at.newton_iterations;
     point.pass_throughs = at.pass_throughs;
@@ -96,29 +104,19 @@ StretchResult stretch(const RelaxResult& relaxed, const RelaxOptions& options, c
     return !on_point || on_point(point);
   };
 
-  RelaxOptions held = options;
-  held.grow_in = false;
-  held.model.free = free_measures(test, options.model.free);
-  held.model.plates = relaxed.plates;
-  held.history = relaxed.history;
-  result.fabric = start;
-  // The rest state again, with the measures held: its forces are the zero of the test.
-  RelaxResult at = relax(start, held);
-  energy_at_rest = at.energy.total() - at.energy.friction;
-  if (!add_point(at)) result.stopped = true;
+  if (!add_point()) result.stopped = true;
+  const bool course = test.direction == StretchDirection::course || test.direction == StretchDirection::both;
+  const bool wale = test.direction == StretchDirection::wale || test.direction == StretchDirection::both;
+  const bool shear = test.direction == StretchDirection::shear;
   for (const double strain : strains_on_the_way(test)) {
     if (result.stopped || at.stopped) break;
     const Fabric& now = at.fabric;
-    const bool course =
-        test.direction == StretchDirection::course || test.direction == StretchDirection::both;
-    const bool wale = test.direction == StretchDirection::wale || test.direction == StretchDirection::both;
-    const bool shear = test.direction == StretchDirection::shear;
     const Fabric moved = deformed(now, course ? start.width * (1 + strain) : now.width,
                                   wale ? start.height * (1 + strain) : now.height,
                                   shear ? start.skew + strain * start.height : now.skew);
     held.history = std::move(at.history);
     at = relax(moved, held);
-    if (!add_point(at)) result.stopped = true;
+    if (!add_point()) result.stopped = true;
   }
   result.stopped = result.stopped || at.stopped;
   result.fabric = at.fabric;

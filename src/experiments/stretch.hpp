@@ -22,7 +22,7 @@ struct StretchTest {
 struct StretchPoint {
   double course_strain = 0, wale_strain = 0, shear = 0;
   // Membrane force in the frame's directions per length of the relaxed cloth, N/m (first Piola-Kirchhoff): on
-  // a width of cloth for wale_force, on a height for course_force and shear_force.
+  // a width of cloth for wale_force and shear_force, on a height for course_force.
   double course_force = 0, wale_force = 0, shear_force = 0;
   double energy = 0;  // stored in the cloth per area of the relaxed cloth, J/m^2
   double residual = 0;
@@ -37,10 +37,10 @@ struct StretchResult {
   bool stopped = false;
 };
 
-// `relaxed`: at rest with `options`; `history`: of friction there. Friction keeps its history through the
-// test, so that loading and unloading differ. `bend_stiffness`: B of the reference yarn in N m^2; it turns
-// the model's forces into newtons. `on_point` is called after every point; false stops the test. Throws
-// std::invalid_argument for strains that cannot be: not finite, -0.9 or less, above 5, no turning point.
+// `relaxed`: at rest with `options`, with the history of friction there, which is kept through the test, so
+// that loading and unloading differ. `on_point` is called after every point; false stops the test. Throws
+// std::invalid_argument if the material does not say its reference_bend_N_m2 (forces have no unit then), and
+// for strains that cannot be: not finite, -0.9 or less, above 5, no turning point.
 StretchResult stretch(const RelaxResult& relaxed, const RelaxOptions& options, const StretchTest& test,
                       const std::function<bool(const StretchPoint&)>& on_point = {});
 

@@ -10,6 +10,7 @@
 
 #include "loop_scale/nurbs.hpp"
 #include "outputs/canvas.hpp"
+#include "outputs/gl_program.hpp"
 #include "outputs/headless_gl.hpp"
 
 namespace loopwright {
@@ -232,32 +233,11 @@ void draw_line(const StructureScene& scene, const StructureScene::Line& line, co
   }
 }
 
-GLuint compiled(GLenum kind, const char* source) {
-  const GLuint shader = glCreateShader(kind);
-  glShaderSource(shader, 1, &source, nullptr);
-  glCompileShader(shader);
-  GLint good = 0;
-  glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
-  if (good != GL_TRUE)
-    throw std::runtime_error("the OpenGL driver refused a shader of the structure picture");
-  return shader;
-}
-
 }  // namespace
 
 struct StructureRenderer::Gl {
   Gl(int width, int height) : canvas(width, height) {
-    program = glCreateProgram();
-    const GLuint vertex = compiled(GL_VERTEX_SHADER, vertex_shader),
-                 fragment = compiled(GL_FRAGMENT_SHADER, fragment_shader);
-    glAttachShader(program, vertex);
-    glAttachShader(program, fragment);
-    glLinkProgram(program);
-    glDeleteShader(vertex);
-    glDeleteShader(fragment);
-    GLint good = 0;
-    glGetProgramiv(program, GL_LINK_STATUS, &good);
-    if (good != GL_TRUE) throw std::runtime_error("the OpenGL driver could not link the structure picture");
+    program = linked_program(vertex_shader, fragment_shader);
     glGenVertexArrays(1, &array);
     glGenBuffers(1, &buffer);
     glBindVertexArray(array);

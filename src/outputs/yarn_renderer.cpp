@@ -8,40 +8,11 @@
 #include <stdexcept>
 #include <string>
 
+#include "outputs/gl_program.hpp"
 #include "outputs/yarn_shaders.hpp"
 
 namespace loopwright {
 namespace {
-
-GLuint compiled(GLenum kind, const char* source) {
-  const GLuint shader = glCreateShader(kind);
-  glShaderSource(shader, 1, &source, nullptr);
-  glCompileShader(shader);
-  GLint good = 0;
-  glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
-  if (good == GL_TRUE) return shader;
-  std::array<char, 1024> log{};
-  glGetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), nullptr, log.data());
-  glDeleteShader(shader);
-  throw std::runtime_error(std::string("the OpenGL driver refused a shader: ") + log.data());
-}
-
-GLuint linked(const char* vertex, const char* fragment) {
-  const GLuint v = compiled(GL_VERTEX_SHADER, vertex), f = compiled(GL_FRAGMENT_SHADER, fragment);
-  const GLuint program = glCreateProgram();
-  glAttachShader(program, v);
-  glAttachShader(program, f);
-  glLinkProgram(program);
-  glDeleteShader(v);
-  glDeleteShader(f);
-  GLint good = 0;
-  glGetProgramiv(program, GL_LINK_STATUS, &good);
-  if (good == GL_TRUE) return program;
-  std::array<char, 1024> log{};
-  glGetProgramInfoLog(program, static_cast<GLsizei>(log.size()), nullptr, log.data());
-  glDeleteProgram(program);
-  throw std::runtime_error(std::string("the OpenGL driver could not link a program: ") + log.data());
-}
 
 GLint place(GLuint program, const char* name) { return glGetUniformLocation(program, name); }
 void set(GLuint program, const char* name, float v) { glUniform1f(place(program, name), v); }
@@ -75,10 +46,10 @@ YarnRenderer::YarnRenderer() {
     throw std::runtime_error("OpenGL 3.3 is needed, the driver offers " +
                              std::to_string(epoxy_gl_version() / 10) + "." +
                              std::to_string(epoxy_gl_version() % 10));
-  yarn_program_ = linked(shaders::yarn_vertex, shaders::yarn_fragment);
-  hair_program_ = linked(shaders::yarn_vertex, shaders::hair_fragment);
-  depth_program_ = linked(shaders::depth_vertex, shaders::depth_fragment);
-  table_program_ = linked(shaders::table_vertex, shaders::table_fragment);
+  yarn_program_ = linked_program(shaders::yarn_vertex, shaders::yarn_fragment);
+  hair_program_ = linked_program(shaders::yarn_vertex, shaders::hair_fragment);
+  depth_program_ = linked_program(shaders::depth_vertex, shaders::depth_fragment);
+  table_program_ = linked_program(shaders::table_vertex, shaders::table_fragment);
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest_texture_);
   glGenVertexArrays(1, &vertex_array_);
   glGenVertexArrays(1, &empty_vertex_array_);

@@ -4,15 +4,10 @@
 #include <chrono>
 #include <cstdio>
 #include <sstream>
-#include <stdexcept>
 #include <string>
 
-#include "geometry/fit_fabric.hpp"
-#include "geometry/periodic_cell.hpp"
-#include "machine/run_machine.hpp"
 #include "mechanics/relax.hpp"
-#include "notation/read_vermiculation.hpp"
-#include "topology/build_yarn_graph.hpp"
+#include "reference_cell.hpp"
 
 namespace loopwright {
 namespace {
@@ -27,20 +22,6 @@ constexpr Structure structures[] = {{"plain", "g", 5.295, 4.047, 43.18},
                                     {"garter", "g\ne", 7.67, 3.580, 38.08},
                                     {"moss", "ge\neg", 6.975, 4.253, 42.88}};
 
-Fabric cell_of(const Structure& structure, double segments) {
-  const std::string text =
-      std::string(";!vermiculation-1\n;;Yarn-A: diameter=1 mm\n;;Loop-Length: 17 mm\n;;Edges: periodic\n") +
-      structure.courses + "\n";
-  Diagnostics diagnostics(structure.name);
-  const Program program = read_vermiculation(text, diagnostics);
-  const YarnGraph graph = build_yarn_graph(program, run_machine(program, diagnostics), diagnostics);
-  if (!diagnostics.ok()) throw std::runtime_error(std::string(structure.name) + " has errors");
-  const GeometryOptions options = make_geometry_options(program);
-  const PlacedPiece piece = place_type_points(graph, options);
-  return fit_fabric(cut_periodic_cell(graph, options, piece, cell_range(program)), graph, options,
-                    {segments});
-}
-
 // Frictionless, in two stages: the yarn grows in at fixed measures, then the measures are let go. The yarn of
 // the first geometry is too long, and pulls a moss cell into a poor minimum if its measures are free from the
 // start.
@@ -50,7 +31,7 @@ void print_row(const Structure& structure, double segments, double spacing) {
   options.model.sample_spacing = spacing;
   options.model.free = {false, false, false};
   options.tolerance = 0.05;
-  const Fabric start = cell_of(structure, segments);
+  const Fabric start = reference_cell(structure.name, structure.courses, segments);
   const auto begin = std::chrono::steady_clock::now();
   const RelaxResult grown = relax(start, options);
   options.model.free = {true, true, false};

@@ -8,15 +8,10 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <stdexcept>
 #include <string>
 
-#include "geometry/fit_fabric.hpp"
-#include "geometry/periodic_cell.hpp"
-#include "machine/run_machine.hpp"
 #include "mechanics/relax.hpp"
-#include "notation/read_vermiculation.hpp"
-#include "topology/build_yarn_graph.hpp"
+#include "reference_cell.hpp"
 
 namespace loopwright {
 namespace {
@@ -25,19 +20,6 @@ struct Structure {
   const char *name, *courses;
 };
 constexpr std::array<Structure, 3> structures{{{"plain", "g"}, {"rib", "ge"}, {"garter", "g\ne"}}};
-
-Fabric cell_of(const Structure& structure) {
-  const std::string text =
-      std::string(";!vermiculation-1\n;;Yarn-A: diameter=1 mm\n;;Loop-Length: 17 mm\n;;Edges: periodic\n") +
-      structure.courses + "\n";
-  Diagnostics diagnostics(structure.name);
-  const Program program = read_vermiculation(text, diagnostics);
-  const YarnGraph graph = build_yarn_graph(program, run_machine(program, diagnostics), diagnostics);
-  if (!diagnostics.ok()) throw std::runtime_error(std::string(structure.name) + " has errors");
-  const GeometryOptions options = make_geometry_options(program);
-  const PlacedPiece piece = place_type_points(graph, options);
-  return fit_fabric(cut_periodic_cell(graph, options, piece, cell_range(program)), graph, options, {24});
-}
 
 RelaxOptions options_of(bool free) {
   RelaxOptions options;
@@ -69,7 +51,8 @@ void print_row(const Structure& structure) {
   RelaxOptions grow = options_of(false);
   grow.grow_in = true;
   grow.tolerance = 0.05;
-  const RelaxResult rest = relax(relax(cell_of(structure), grow).fabric, options_of(true));
+  const RelaxResult rest =
+      relax(relax(reference_cell(structure.name, structure.courses, 24), grow).fabric, options_of(true));
   const Fabric& cell = rest.fabric;
   const double loops = static_cast<double>(cell.loops.size());
   double l = 0;

@@ -13,11 +13,11 @@
 namespace loopwright {
 namespace {
 
-// A loop's place in its repeat: bed, slot in quarter needles from the cell's first slot, and which of the
-// loops that this needle made in the repeat it is.
+// A loop's place in its repeat: bed, slot in quarter needles from the cell's first slot, and in which of the
+// repeat's passes that form loops it was made, counted from its first.
 struct RepeatPlace {
   bool front = true;
-  int quarter_slot = 0, ordinal = 0;
+  int quarter_slot = 0, pass = 0;
   friend auto operator<=>(const RepeatPlace&, const RepeatPlace&) = default;
 };
 
@@ -31,7 +31,7 @@ class CellCutter {
     if (range.wales <= 0 || range.repeat < 0 ||
         range.repeat + 1 >= static_cast<int>(range.repeat_starts.size()))
       throw std::invalid_argument("periodic cell: the range names no repeat of the piece");
-    std::map<std::array<int, 4>, int> made;
+    number_passes();
     places_.resize(graph.loops.size());
     shifts_.resize(graph.loops.size());
     for (std::size_t i = 0; i < graph.loops.size(); ++i) {
@@ -41,7 +41,7 @@ class CellCutter {
       const int width = 4 * range.wales;
       const int m = quarter >= 0 ? quarter / width : -((width - 1 - quarter) / width);
       const bool front = is_front(loop.bed);
-      places_[i] = {front, quarter - m * width, made[{block, front ? 1 : 0, quarter, 0}]++};
+      places_[i] = {front, quarter - m * width, pass_numbers_.at({block, loop.pass})};
       shifts_[i] = {m, block - range.repeat};
       if (m == 0 && block == range.repeat) {
         cell_.emplace(places_[i], LoopId(i));
@@ -78,6 +78,17 @@ class CellCutter {
   }
 
  private:
+  // Passes that form loops, counted in each repeat from its first. What lies before the first repeat may be no
+  // whole one: it is counted so that its last pass stands where a repeat has its last.
+  void number_passes() {
+    for (const Loop& loop : graph_.loops) pass_numbers_[{block_of(loop.instruction), loop.pass}] = 0;
+    std::map<int, int> counts;
+    for (auto& [key, number] : pass_numbers_) number = counts[key.first]++;
+    const int before = counts[-1], whole = counts[range_.repeat];
+    for (auto& [key, number] : pass_numbers_)
+      if (key.first == -1) number += whole - before;
+  }
+
   int block_of(int instruction) const {
     const auto after =
         std::upper_bound(range_.repeat_starts.begin(), range_.repeat_starts.end(), instruction);
@@ -86,6 +97,7 @@ class CellCutter {
 
   const YarnGraph& graph_;
   const CellRange& range_;
+  std::map<std::pair<int, int>, int> pass_numbers_;  // (repeat, pass)
   std::vector<RepeatPlace> places_;
   std::vector<Shift> shifts_;
   std::map<RepeatPlace, LoopId> cell_;

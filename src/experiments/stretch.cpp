@@ -80,7 +80,7 @@ StretchResult stretch(const RelaxResult& relaxed, const RelaxOptions& options, c
   held.history = relaxed.history;
   // The rest state again, with the measures held: its energy is the zero of the test.
   RelaxResult at = relax(start, held);
-  const auto stored = [](const RelaxResult& r) { return r.energy.total() - r.energy.friction; };
+  const auto stored = [](const RelaxResult& r) { return r.energy.stored(); };
   const double energy_at_rest = stored(at);
 
   StretchResult result;

@@ -16,10 +16,10 @@ int quarters(double slots) { return static_cast<int>(std::lround(4 * slots)); }
 // what was formed there (0: nothing).
 struct StitchTable {
   int first_slot = 0, columns = 0;
-  std::vector<int> passes;              // [row]
-  std::vector<int> all_instructions;    // first instruction of every pass of the whole piece
-  int first_row = 0;                    // number of passes[0] among these
-  std::vector<std::int32_t> stitches;   // [row * columns + column]
+  std::vector<int> passes;             // [row]
+  std::vector<int> all_instructions;   // first instruction of every pass of the whole piece
+  int first_row = 0;                   // number of passes[0] among these
+  std::vector<std::int32_t> stitches;  // [row * columns + column]
 
   int rows() const { return static_cast<int>(passes.size()); }
   std::int32_t at(int row, int column) const {
@@ -187,7 +187,8 @@ std::optional<FoundRepeat> repeat_in(const StitchTable& table, int least_seen) {
   Stretch courses;
   for (int period = 1; period < table.rows() && courses.period == 0; ++period) {
     const Stretch run = longest_run(table.rows(), period, same_rows);
-    if (run.size >= rows_share * table.rows() && run.size - period >= std::min(period, least_seen)) courses = run;
+    if (run.size >= rows_share * table.rows() && run.size - period >= std::min(period, least_seen))
+      courses = run;
   }
   if (courses.period == 0) return std::nullopt;
 

@@ -78,8 +78,8 @@ class CellCutter {
   }
 
  private:
-  // Passes that form loops, counted in each repeat from its first. What lies before the first repeat may be no
-  // whole one: it is counted so that its last pass stands where a repeat has its last.
+  // Passes that form loops, counted in each repeat from its first. What lies before the first repeat may be
+  // no whole one: it is counted so that its last pass stands where a repeat has its last.
   void number_passes() {
     for (const Loop& loop : graph_.loops) pass_numbers_[{block_of(loop.instruction), loop.pass}] = 0;
     std::map<int, int> counts;

@@ -461,9 +461,11 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
     for (std::size_t i = 0; i < nodes; ++i)
       if (model_.held[i]) gradient->u[i] = {};
     measure_forces_ = gradient->g;
-    for (std::size_t k = 0; k < 3; ++k)
-      if (!free[k]) gradient->g[k] = 0;
+    for (std::size_t k = 0; k < 3; ++k) gradient->g[k] = free[k] ? gradient->g[k] - model_.load[k] : 0;
   }
+  const Measures measures{state.width, state.height, state.skew};
+  for (std::size_t k = 0; k < 3; ++k)
+    if (free[k]) energy.load -= model_.load[k] * measures[k];
   if (matrix) {
     constexpr Block identity{1, 0, 0, 0, 1, 0, 0, 0, 1};
     for (std::size_t i = 0; i < nodes; ++i) {

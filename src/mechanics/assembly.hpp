@@ -17,7 +17,9 @@ namespace loopwright {
 struct EnergyParts {
   double stretch = 0, bend = 0, contact = 0, plates = 0;
   double friction = 0;  // work against friction since the last Hessian: not stored in the cloth
-  double total() const { return stretch + bend + contact + plates + friction; }
+  double load = 0;      // of the loads on the measures: minus load times measure
+  double stored() const { return stretch + bend + contact + plates; }
+  double total() const { return stored() + friction + load; }
 };
 
 class Assembly {
@@ -36,7 +38,8 @@ class Assembly {
   // contact there. With friction this also takes down every contact's load, normal and place: until the next
   // call, energy() counts friction work from this state.
   EnergyParts hessian(const YarnState& state, Unknowns& gradient, BlockMatrix& hessian);
-  // dE/d(width, height, skew) at the last Hessian's state, for measures that are not free as well.
+  // dE/d(width, height, skew) of the cloth at the last Hessian's state, without loads: what the frame bears,
+  // for measures that are not free as well.
   const Measures& measure_forces() const { return measure_forces_; }
   // Elastic slip of every contact that carries load, to go on with: by segments and lattice shift.
   struct FrictionContact {

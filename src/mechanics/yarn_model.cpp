@@ -57,6 +57,7 @@ YarnModel build_yarn_model(const Fabric& fabric, const ModelOptions& options) {
   model.periodic = fabric.periodic;
   model.free = options.free;
   model.plates = options.plates;
+  model.load = options.load;
   model.contact = options.material.contact;
   model.friction = options.material.friction;
   double longest_segment = 0;

@@ -8,6 +8,7 @@
 #include "geometry/fabric.hpp"
 #include "mechanics/energies/contact.hpp"
 #include "mechanics/laws/contact_law.hpp"
+#include "mechanics/measures.hpp"
 
 namespace loopwright {
 
@@ -69,6 +70,7 @@ struct YarnModel {
   bool periodic = false;
   FreeMeasures free;
   FlatPlates plates;
+  Measures load{};  // dE/d(width, height, skew) that the cloth is to bear, B/d^2; counts where these are free
 };
 
 struct YarnState {
@@ -83,6 +85,7 @@ struct ModelOptions {
   double sample_spacing = 0.18;  // wanted distance of contact samples along a yarn, in d
   FreeMeasures free;
   FlatPlates plates;
+  Measures load{};  // as in YarnModel
 };
 
 // Throws std::invalid_argument on non-finite input or data out of range, saying which and what is allowed.

@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "base/vec3.hpp"
+#include "mechanics/measures.hpp"
 
 namespace loopwright {
 
-using Block = std::array<double, 9>;     // row-major 3 x 3
-using Measures = std::array<double, 3>;  // width, height, skew
+using Block = std::array<double, 9>;  // row-major 3 x 3
 
 struct BlockMatrix {
   std::vector<std::int32_t> row_start;  // [rows + 1]

@@ -1,0 +1,81 @@
+#include "experiments/as_knitted.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace loopwright {
+namespace {
+
+// The fabric at another width; its points go along.
+Fabric at_width(Fabric fabric, double width) {
+  const double share = width / fabric.width;
+  for (FabricYarn& yarn : fabric.yarns)
+    for (Vec3& p : yarn.control_points) p.x *= share;
+  fabric.width = width;
+  fabric.skew *= share;
+  return fabric;
+}
+
+double middle_height(const Fabric& fabric) {
+  double low = INFINITY, high = -INFINITY;
+  for (const FabricYarn& yarn : fabric.yarns)
+    for (const Vec3& p : yarn.control_points) low = std::min(low, p.z), high = std::max(high, p.z);
+  return (low + high) / 2;
+}
+
+FlatPlates plates_apart(double middle, double gap) {
+  constexpr double stiffness = 50;  // as for finite pieces: yarn goes in by less than a tenth of a diameter
+  return {stiffness, middle - gap / 2, middle + gap / 2};
+}
+
+void check_history(const Fabric& first, const RelaxOptions& options, const KnittingHistory& history) {
+  const auto require = [](bool holds, const char* what) {
+    if (!holds) throw std::invalid_argument(what);
+  };
+  require(history.machine_width_mm > 0 && std::isfinite(history.machine_width_mm),
+          "the width on the machine must be a positive number");
+  require(history.take_down_N >= 0 && std::isfinite(history.take_down_N),
+          "the take-down must be a number of newtons, 0 or more");
+  require(history.flat_gap_mm >= 0 && std::isfinite(history.flat_gap_mm),
+          "the gap of the plates must be a number of millimetres, 0 or more");
+  require(first.width > 0 && first.height > 0,
+          "only a periodic cell or a piece with a frame has a width on the machine");
+  require(history.take_down_N == 0 || options.model.material.reference_bend_N_m2 > 0,
+          "take-down needs the yarn's bend stiffness: name a material or give the yarn its data");
+}
+
+void add_counts(RelaxResult& to, const RelaxResult& from) {
+  to.newton_iterations += from.newton_iterations;
+  to.linear_iterations += from.linear_iterations;
+  to.factorisations += from.factorisations;
+  to.pass_throughs += from.pass_throughs;
+}
+
+}  // namespace
+
+KnittedRest relax_as_knitted(const Fabric& first, const RelaxOptions& options,
+                             const KnittingHistory& history) {
+  check_history(first, options, history);
+  const double d = first.diameter_mm;
+  RelaxOptions knitting = options;
+  knitting.model.free.width = false;
+  knitting.model.free.height = true;
+  if (history.take_down_N > 0)
+    knitting.model.load[1] = history.take_down_N * d * d * 1e-6 / options.model.material.reference_bend_N_m2;
+  if (history.flat_gap_mm > 0)
+    knitting.model.plates = plates_apart(middle_height(first), history.flat_gap_mm / d);
+  KnittedRest rest;
+  rest.on_machine = relax(at_width(first, history.machine_width_mm / d), knitting);
+
+  RelaxOptions released = options;
+  released.grow_in = false;
+  released.model.plates = rest.on_machine.plates;
+  released.history = rest.on_machine.history;
+  released.most_iterations = std::max(1, options.most_iterations - rest.on_machine.newton_iterations);
+  rest.relaxed = relax(rest.on_machine.fabric, released);
+  add_counts(rest.relaxed, rest.on_machine);
+  return rest;
+}
+
+}  // namespace loopwright

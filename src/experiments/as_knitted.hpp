@@ -1,0 +1,28 @@
+// What a fabric is like when it is measured depends, with friction, on what it went through: it was knitted
+// at the pitch of the needles, under take-down, then let go and laid flat.
+#pragma once
+#include "mechanics/relax.hpp"
+
+namespace loopwright {
+
+struct KnittingHistory {
+  double machine_width_mm = 0;  // of the fabric (cell, piece in a frame) on the needles
+  double take_down_N = 0;       // pull along the wales on that width, while it is on the needles
+  // Laid flat: between plates that leave the outermost centrelines so far apart; 0: not at all. A jersey
+  // rolls up if it may, and no ruler is laid to cloth like that.
+  double flat_gap_mm = 0;
+};
+
+struct KnittedRest {
+  RelaxResult on_machine;  // at rest on the needles
+  RelaxResult relaxed;     // let go; its counts of steps are those of both
+};
+
+// `first`: a first geometry of a periodic cell, or of a piece whose frame can move. Relaxed twice, between
+// the plates: with the machine's width and take-down, then free, friction keeping its history. Throws
+// std::invalid_argument for a history that cannot be, for a load without the yarn's reference_bend_N_m2, and
+// like relax().
+KnittedRest relax_as_knitted(const Fabric& first, const RelaxOptions& options,
+                             const KnittingHistory& history);
+
+}  // namespace loopwright

@@ -1,0 +1,39 @@
+// What is assumed of the machine and the yarn of KnitDB's swatches (15-gauge flat-bed machine, Tamm Petit
+// 2/30 acrylic, one stitch cam for all). Set from the yarn's count and from two swatches alone,
+// 2_1_004Stockinette and 3_3_009k1p1rib; docs/swatches.md says how.
+#pragma once
+#include "notation/program.hpp"
+
+namespace loopwright {
+
+struct MachineModel {
+  double gauge_npi = 15;
+  // Yarn in a loop: what the stitch cam draws, and what it takes to go from one bed to the other (half of it
+  // at either end of a loop). A loop that is moved has no more yarn than others, a loop on an empty needle no
+  // less.
+  double loop_length_mm = 6.76, bed_change_mm = 1.40;
+  double take_down_N = 0.02;  // of a wale
+  // Laid flat: room for the centrelines of jersey (one layer of stitches, and a diameter for yarn that
+  // crosses it) and of cloth whose stitches show both faces.
+  double one_layer_mm = 1.0, two_layers_mm = 1.85;
+  // Yarn.
+  double diameter_mm = 0.39, bend_stiffness_mN_mm2 = 12.7, friction = 0.25, linear_density_tex = 66.7;
+  double load_N = 5.96;  // 608 g: of the stretched swatches, in either direction
+};
+
+// The programme with the machine's gauge and loops, and with this yarn on every carrier.
+inline void apply(const MachineModel& machine, Program& program) {
+  program.settings.gauge_npi = machine.gauge_npi;
+  program.settings.loop_length_mm = machine.loop_length_mm;
+  program.settings.bed_change_mm = machine.bed_change_mm;
+  for (YarnData& yarn : program.yarns) {
+    yarn = {};
+    yarn.material = "Tamm Petit 2/30";
+    yarn.diameter_mm = machine.diameter_mm;
+    yarn.bend_stiffness_mN_mm2 = machine.bend_stiffness_mN_mm2;
+    yarn.friction_coefficient = machine.friction;
+    yarn.linear_density_tex = machine.linear_density_tex;
+  }
+}
+
+}  // namespace loopwright

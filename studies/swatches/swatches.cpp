@@ -1,0 +1,222 @@
+// Predicts the size of knitted swatches from their programmes and compares it with what was measured.
+//   study_swatches cells TABLE                    relax a cell of every pattern of faces, for the net road
+//   study_swatches list FOLDER                    names of the swatches
+//   study_swatches predict FOLDER NAME ROWS TABLE one swatch, by its cell and by the net: ROWS/NAME.row
+//   study_swatches collect FOLDER ROWS OUT        all rows: OUT/results.csv, details.csv, figures on the
+//   screen
+// studies/swatches/run does all of it.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <iostream>
+#include <sstream>
+
+#include "base/parallel.hpp"
+#include "net_road.hpp"
+#include "outputs/atomic_file.hpp"
+#include "outputs/write_plot_svg.hpp"
+#include "swatch_table.hpp"
+
+namespace loopwright {
+namespace {
+
+// What is kept of a swatch: a name and a number a line.
+using Row = std::vector<std::pair<std::string, double>>;
+
+Row row_of(const SwatchPrediction& cell, const SwatchPrediction& net) {
+  return {{"width_mm", cell.width_mm},
+          {"height_mm", cell.height_mm},
+          {"mass_g", cell.mass_g},
+          {"stretched_width_mm", cell.stretched_width_mm},
+          {"stretched_height_mm", cell.stretched_height_mm},
+          {"net_width_mm", net.width_mm},
+          {"net_height_mm", net.height_mm},
+          {"net_seconds", net.seconds_knit},
+          {"cell_wales", cell.cell_wales},
+          {"cell_courses", cell.cell_courses},
+          {"loops", cell.loops},
+          {"newton_iterations", cell.newton_iterations},
+          {"pass_throughs", cell.pass_throughs},
+          {"interlacings", cell.interlacings},
+          {"interlacings_intact", cell.interlacings_intact},
+          {"converged", cell.converged ? 1 : 0},
+          {"stretched_converged", cell.stretched_converged ? 1 : 0},
+          {"seconds_knit", cell.seconds_knit},
+          {"seconds_geometry", cell.seconds_geometry},
+          {"seconds_relax", cell.seconds_relax},
+          {"seconds_stretch", cell.seconds_stretch}};
+}
+
+std::map<std::string, double> read_row(const std::filesystem::path& path) {
+  std::map<std::string, double> row;
+  std::ifstream file(path);
+  std::string name;
+  double value = 0;
+  while (file >> name >> value) row[name] = value;
+  return row;
+}
+
+int predict(const std::filesystem::path& folder, const std::string& name, const std::filesystem::path& rows,
+            const std::filesystem::path& table) {
+  const auto swatches = measured_swatches(folder);
+  const auto found = std::find_if(swatches.begin(), swatches.end(),
+                                  [&name](const MeasuredSwatch& s) { return s.name == name; });
+  if (found == swatches.end()) throw std::runtime_error("no swatch of that name: " + name);
+  std::filesystem::create_directories(rows);
+  const MachineModel machine;
+  const SwatchPrediction net = predict_by_net(found->file, machine, read_loop_sizes(table));
+  SwatchWork work;
+  work.stretched = true;
+  work.state = rows / (name + ".h5");
+  SwatchPrediction cell;
+  try {
+    cell = predict_by_cell(found->file, work);
+  } catch (const std::exception& error) {
+    cell.trouble = error.what();
+  }
+  // A prediction there must be: where the cell has none, the net's.
+  const bool whole = cell.trouble.empty() && cell.interlacings_intact == cell.interlacings;
+  if (!whole || !cell.converged) {
+    std::cerr << name << ": " << (cell.trouble.empty() ? "the cell did not come to rest whole" : cell.trouble)
+              << "; the net's size is taken\n";
+    cell.width_mm = net.width_mm, cell.height_mm = net.height_mm, cell.mass_g = net.mass_g;
+    cell.converged = false;
+  }
+  AtomicFile file(rows / (name + ".row"));
+  for (const auto& [key, value] : row_of(cell, net)) file.stream() << key << ' ' << value << '\n';
+  file.commit();
+  return 0;
+}
+
+struct Errors {
+  double absolute = 0, signed_sum = 0;
+  int count = 0;
+  void add(double predicted, double measured) {
+    if (!(measured > 0) || !(predicted > 0)) return;
+    absolute += std::abs(predicted / measured - 1);
+    signed_sum += predicted / measured - 1;
+    ++count;
+  }
+  void print(const char* what) const {
+    if (count == 0) return;
+    std::printf("%-28s mean absolute error %5.2f %%   mean error %+5.2f %%   of %d swatches\n", what,
+                100 * absolute / count, 100 * signed_sum / count, count);
+  }
+};
+
+void plot(const std::filesystem::path& path, const std::vector<MeasuredSwatch>& swatches,
+          const std::map<std::string, std::map<std::string, double>>& rows) {
+  PlotCurve width{"width", {}, {}, true}, height{"height", {}, {}, true}, equal{"equal", {}, {}, false};
+  double low = 1e9, high = 0;
+  for (const MeasuredSwatch& s : swatches) {
+    const auto found = rows.find(s.name);
+    if (found == rows.end() || !(s.width_mm > 0) || !(s.height_mm > 0)) continue;
+    width.x.push_back(s.width_mm), width.y.push_back(found->second.at("width_mm"));
+    height.x.push_back(s.height_mm), height.y.push_back(found->second.at("height_mm"));
+    low = std::min({low, s.width_mm, s.height_mm}), high = std::max({high, s.width_mm, s.height_mm});
+  }
+  if (width.x.empty()) return;
+  equal.x = equal.y = {low, high};
+  write_plot_svg(path, {"Sixty wales by sixty courses, predicted from the programme",
+                        "measured, mm",
+                        "predicted, mm",
+                        {width, height, equal}});
+}
+
+int collect(const std::filesystem::path& folder, const std::filesystem::path& rows_folder,
+            const std::filesystem::path& out) {
+  const auto swatches = measured_swatches(folder);
+  std::map<std::string, std::map<std::string, double>> rows;
+  for (const MeasuredSwatch& s : swatches) {
+    auto row = read_row(rows_folder / (s.name + ".row"));
+    if (row.contains("seconds_stretch")) rows[s.name] = std::move(row);
+  }
+  AtomicFile results(out / "results.csv"), details(out / "details.csv");
+  results.stream() << "swatch,measured_width_mm,predicted_width_mm,measured_height_mm,predicted_height_mm,"
+                      "measured_mass_g,predicted_mass_g,seconds,converged,interlacings_intact\n";
+  details.stream() << "swatch,width_error,height_error,mass_error,measured_stretched_width_mm,"
+                      "measured_stretched_height_mm";
+  for (const auto& [key, value] : row_of({}, {})) details.stream() << ',' << key;
+  details.stream() << '\n';
+  Errors width, height, mass, net_width, net_height, stretched_width, stretched_height;
+  double seconds = 0;
+  std::vector<double> widths, heights;
+  const auto known = [](double value) { return value > 0 ? std::to_string(value).substr(0, 6) : ""; };
+  for (const MeasuredSwatch& s : swatches) {
+    const auto found = rows.find(s.name);
+    if (found == rows.end()) continue;
+    auto& r = found->second;
+    const double took = r["seconds_knit"] + r["seconds_geometry"] + r["seconds_relax"];
+    seconds += took;
+    char line[400];
+    std::snprintf(line, sizeof line, "%s,%s,%.2f,%s,%.2f,%s,%.3f,%.2f,%d,%d\n", s.name.c_str(),
+                  known(s.width_mm).c_str(), r["width_mm"], known(s.height_mm).c_str(), r["height_mm"],
+                  known(s.mass_g).c_str(), r["mass_g"], took, static_cast<int>(r["converged"]),
+                  r["interlacings"] > 0 && r["interlacings"] == r["interlacings_intact"] ? 1 : 0);
+    results.stream() << line;
+    details.stream() << s.name << ',' << r["width_mm"] / s.width_mm - 1 << ','
+                     << r["height_mm"] / s.height_mm - 1 << ',' << r["mass_g"] / s.mass_g - 1 << ','
+                     << known(s.stretched_width_mm) << ',' << known(s.stretched_height_mm);
+    for (const auto& [key, value] : row_of({}, {})) details.stream() << ',' << r[key];
+    details.stream() << '\n';
+    width.add(r["width_mm"], s.width_mm), height.add(r["height_mm"], s.height_mm);
+    mass.add(r["mass_g"], s.mass_g);
+    net_width.add(r["net_width_mm"], s.width_mm), net_height.add(r["net_height_mm"], s.height_mm);
+    if (r["stretched_converged"] > 0) {
+      stretched_width.add(r["stretched_width_mm"], s.stretched_width_mm);
+      stretched_height.add(r["stretched_height_mm"], s.stretched_height_mm);
+    }
+    if (s.width_mm > 0) widths.push_back(s.width_mm);
+    if (s.height_mm > 0) heights.push_back(s.height_mm);
+  }
+  results.commit();
+  details.commit();
+  plot(out / "scatter.svg", swatches, rows);
+  width.print("width"), height.print("height"), mass.print("mass");
+  net_width.print("width, net road"), net_height.print("height, net road");
+  stretched_width.print("stretched width"), stretched_height.print("stretched height");
+  const auto median_errors = [](std::vector<double> values, const char* what) {
+    if (values.empty()) return;
+    std::sort(values.begin(), values.end());
+    Errors errors;
+    for (const double v : values) errors.add(values[values.size() / 2], v);
+    errors.print(what);
+  };
+  median_errors(widths, "width, always the median");
+  median_errors(heights, "height, always the median");
+  std::printf("%zu of %zu swatches, %.0f s of work\n", rows.size(), swatches.size(), seconds);
+  return 0;
+}
+
+int run(const std::vector<std::string>& words) {
+  if (words.size() == 2 && words[0] == "cells") {
+    write_loop_sizes(words[1], relax_face_cells({}));
+    return 0;
+  }
+  if (words.size() == 2 && words[0] == "list") {
+    for (const MeasuredSwatch& s : measured_swatches(words[1])) std::cout << s.name << '\n';
+    return 0;
+  }
+  if (words.size() == 5 && words[0] == "predict") {
+    set_thread_count(1);
+    return predict(words[1], words[2], words[3], words[4]);
+  }
+  if (words.size() == 4 && words[0] == "collect") return collect(words[1], words[2], words[3]);
+  std::cerr << "study_swatches cells TABLE | list FOLDER | predict FOLDER NAME ROWS TABLE | collect FOLDER "
+               "ROWS OUT\n";
+  return 2;
+}
+
+}  // namespace
+}  // namespace loopwright
+
+int main(int count, char** words) {
+  try {
+    return loopwright::run({words + 1, words + count});
+  } catch (const std::exception& error) {
+    std::cerr << "study_swatches: " << error.what() << '\n';
+    return 1;
+  }
+}

@@ -8,15 +8,18 @@
 namespace loopwright {
 
 namespace {
-bool is_yarn_letter(char c) { return c == 'g' || c == 'e' || c == 'v' || c == 'n'; }
-bool is_transfer_letter(char c) { return c == 'T' || c == 't'; }
 bool holds(const std::vector<Cell>& cells, bool (*wanted)(char)) {
   return std::any_of(cells.begin(), cells.end(), [&](const Cell& cell) { return wanted(cell.letter); });
 }
+bool is_one_of(char letter, std::string_view letters) { return letters.find(letter) != letters.npos; }
 }  // namespace
 
-bool Pass::knits() const { return holds(cells, is_yarn_letter) || holds(rear, is_yarn_letter); }
-bool Pass::transfers() const { return holds(cells, is_transfer_letter) || holds(rear, is_transfer_letter); }
+bool forms_loop(char letter) { return is_one_of(letter, "gevnsS"); }
+bool moves_loops(char letter) { return is_one_of(letter, "tTdD"); }
+bool is_rear_letter(char letter) { return is_one_of(letter, "enSTD"); }
+
+bool Pass::knits() const { return holds(cells, forms_loop) || holds(rear, forms_loop); }
+bool Pass::transfers() const { return holds(cells, moves_loops) || holds(rear, moves_loops); }
 bool Pass::carries_yarn() const {
   return knits() || ((!yarns.empty() || direction != Direction::none) && !transfers());
 }
@@ -170,23 +173,23 @@ class CourseParser {
     }
     for (const auto* row : {&pass.cells, &pass.rear}) {
       for (const Cell& cell : *row) {
-        if (!is_transfer_letter(cell.letter)) continue;
+        if (!moves_loops(cell.letter)) continue;
         if (pass.knits()) {
-          diagnostics_.error(cell.at,
-                             "transfers and stitches in one pass; put '&' or a new line between them");
+          diagnostics_.error(
+              cell.at, "transfers or drops and stitches in one pass; put '&' or a new line between them");
           return;
         }
       }
     }
     if (!pass.yarns.empty() || pass.direction != Direction::none) {
       if (pass.transfers())
-        error(begin, "a pass of transfers carries no yarn; remove what stands before the letters");
+        error(begin, "a pass of transfers or drops carries no yarn; remove what stands before the letters");
       if (pass.cells.empty())
         error(begin, "a pass that carries yarn names its needles; write '.' for those that it goes past");
     }
     if (!pass.both_beds) return;
-    check_row(pass.cells, "gvt.-", "left of '/' stand the front needles: g v t . -");
-    check_row(pass.rear, "enT.-", "right of '/' stand the rear needles: e n T . -");
+    check_row(pass.cells, "gvstd.-", "left of '/' stand the front needles: g v s t d . -");
+    check_row(pass.rear, "enSTD.-", "right of '/' stand the rear needles: e n S T D . -");
   }
 
   void check_row(const std::vector<Cell>& cells, std::string_view letters, const std::string& what) {
@@ -227,7 +230,7 @@ class CourseParser {
         ++at_;
         if (row.cells.size() == first_cell)
           error(begin, "an empty group has zero wales; put letters into it");
-      } else if (is_yarn_letter(c) || is_transfer_letter(c) || c == '.' || c == '-') {
+      } else if (forms_loop(c) || moves_loops(c) || c == '.' || c == '-') {
         row.cells.push_back({c, here(begin)});
       } else {
         unknown_letter(begin);
@@ -300,8 +303,8 @@ class CourseParser {
     while (at_ < text_.size() && (static_cast<unsigned char>(text_[at_]) & 0xc0) == 0x80) ++at_;
     const std::string_view letter = text_.substr(index, at_ - index);
     std::string hint =
-        "letters are g e (stitch on the front, rear bed) v n (tuck) T t (transfer) R r (racking) "
-        ". (missed) - (inactive)";
+        "letters are g e (stitch on the front, rear bed) v n (tuck) s S (split) t T (transfer) d D (drop) "
+        "R r (racking) . (missed) - (inactive)";
     if (letter == "k" || letter == "K")
       hint = "a stitch on the front bed is 'g'";
     else if (letter == "p" || letter == "P")

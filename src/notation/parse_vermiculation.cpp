@@ -21,7 +21,7 @@ constexpr std::size_t deepest_bracket = 32;
 class VermiculationParser {
  public:
   VermiculationParser(std::string_view text, Diagnostics& diagnostics)
-      : lines_(text), diagnostics_(diagnostics) {
+      : whole_(text), lines_(text), diagnostics_(diagnostics) {
     result_.file = diagnostics.file();
   }
 
@@ -37,6 +37,7 @@ class VermiculationParser {
       written_ = {};
       read_line();
       written_.text = written_.kind == WrittenLine::Kind::magic ? text_ : line.text;
+      written_.end = end_of(line);
       if (result_.written.size() < most_written_lines) result_.written.push_back(std::move(written_));
     }
     if (line_ == 0)
@@ -54,6 +55,13 @@ class VermiculationParser {
   SourceLocation here(std::size_t index) const { return {line_, static_cast<int>(index) + 1}; }
   void error(std::size_t index, std::string message) { diagnostics_.error(here(index), std::move(message)); }
 
+  // Line feed and carriage returns that follow the line's text.
+  std::string_view end_of(const TextLine& line) const {
+    const auto end = static_cast<std::size_t>(line.text.data() + line.text.size() - whole_.data());
+    const std::size_t feed = whole_.find('\n', end);
+    return whole_.substr(end, feed == std::string_view::npos ? feed : feed + 1 - end);
+  }
+
   void read_line() {
     if (line_ == 1 && read_magic()) {
       written_.kind = WrittenLine::Kind::magic;
@@ -70,6 +78,7 @@ class VermiculationParser {
   bool read_magic() {
     if (text_.starts_with("\xef\xbb\xbf")) {
       diagnostics_.warning(here(0), "the file starts with a byte-order mark; save it as UTF-8 without one");
+      result_.byte_order_mark = true;
       text_.remove_prefix(3);
     }
     if (!text_.starts_with(magic)) {
@@ -250,6 +259,7 @@ class VermiculationParser {
     std::size_t first_line = 0, letters = 0;
   };
 
+  std::string_view whole_;
   LineReader lines_;
   Diagnostics& diagnostics_;
   Vermiculation result_;

@@ -106,7 +106,7 @@ TEST(Vermiculation, ErrorsPointAtTheCharacter) {
   EXPECT_THAT(errors_of(";;Loop-Length: 6\ng\n"), HasSubstr("2:16: error: the unit is missing after '6'"));
   EXPECT_THAT(errors_of(";;Yarn-A: unobtainium\ng\n"),
               HasSubstr("2:11: error: unknown material 'unobtainium'; known are "));
-  EXPECT_THAT(errors_of("gt\n"), HasSubstr("2:2: error: transfers and stitches in one pass"));
+  EXPECT_THAT(errors_of("gt\n"), HasSubstr("2:2: error: transfers or drops and stitches in one pass"));
 }
 
 TEST(Vermiculation, ErrorsOfTheGrammar) {
@@ -130,7 +130,7 @@ TEST(Vermiculation, ErrorsOfTheGrammar) {
   EXPECT_THAT(errors_of("B: g\n"), HasSubstr("2:1: error: no yarn is called 'B'"));
   EXPECT_THAT(errors_of("A+A: g\n"), HasSubstr("2:3: error: yarn 'A' is named twice"));
   EXPECT_THAT(errors_of("A+: g\n"), HasSubstr("2:3: error: expected the name of a yarn"));
-  EXPECT_THAT(errors_of("A: t\n"), HasSubstr("2:1: error: a pass of transfers carries no yarn"));
+  EXPECT_THAT(errors_of("A: t\n"), HasSubstr("2:1: error: a pass of transfers or drops carries no yarn"));
   EXPECT_THAT(errors_of("[\ng\n"), HasSubstr("2:1: error: this '[' is never closed"));
   EXPECT_THAT(errors_of("g\n]*2\n"), HasSubstr("3:1: error: this ']' has no '['"));
   EXPECT_THAT(errors_of("[\ng\n] 2\n"), HasSubstr("4:3: error: expected how many times"));
@@ -241,7 +241,7 @@ TEST(Vermiculation, MissedAndInactiveNeedles) {
 }
 
 TEST(Vermiculation, TransfersThatNeverDoAnythingAreTold) {
-  EXPECT_THAT(errors_of("gg\n.T\n"), HasSubstr("3:2: warning: there is never a loop to transfer here"));
+  EXPECT_THAT(errors_of("gg\n.T\n"), HasSubstr("3:2: warning: there is never a loop to move here"));
   EXPECT_EQ(errors_of("gg\n.t\n"), "");
 }
 

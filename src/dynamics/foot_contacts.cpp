@@ -1,0 +1,111 @@
+// Where the feet of loops touch the heads that they are drawn through, from the curves of a fabric.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <unordered_map>
+
+#include "dynamics/bindings.hpp"
+
+namespace loopwright {
+namespace {
+
+constexpr int per_segment = 8;
+// Of half a loop's own yarn, from its top: how much of it is head and upper leg, where children are drawn
+// through; how far a foot reaches beyond the half; what lies above the feet's contacts.
+constexpr double head_share = 0.68, foot_reach = 1.12, above_feet = 0.3;
+constexpr double farthest_touch = 1.6, least_apart = 0.6;  // diameters
+
+struct Sample {
+  double t = 0;
+  Vec3 place;
+};
+
+std::vector<Sample> samples(const SplineModel& model, std::span<const Vec3> place, int yarn, double begin,
+                            double end) {
+  std::vector<Sample> line;
+  const int steps = std::max(2, static_cast<int>(std::ceil((end - begin) * per_segment)));
+  for (int k = 0; k <= steps; ++k) {
+    const double t = begin + (end - begin) * k / steps;
+    line.push_back({t, curve_point(model, place, yarn, t).place});
+  }
+  return line;
+}
+
+struct Touch {
+  YarnPlace child, parent;
+  double distance = 0;
+};
+
+// Nearest approaches of two stretches of yarn: pairs of samples nearer to each other than all eight
+// neighbouring pairs, nearest first.
+std::vector<Touch> nearest_approaches(const std::vector<Sample>& child, int child_yarn,
+                                      const std::vector<Sample>& parent, int parent_yarn) {
+  const std::size_t n = child.size(), m = parent.size();
+  std::vector<double> d(n * m);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < m; ++j) d[i * m + j] = distance(child[i].place, parent[j].place);
+  std::vector<Touch> found;
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < m; ++j) {
+      bool least = true;
+      for (std::size_t k = i > 0 ? i - 1 : 0; k <= std::min(i + 1, n - 1); ++k)
+        for (std::size_t l = j > 0 ? j - 1 : 0; l <= std::min(j + 1, m - 1); ++l)
+          if (d[k * m + l] < d[i * m + j]) least = false;
+      // Pieces of one yarn next to each other along it do not touch.
+      const bool own = child_yarn == parent_yarn && std::abs(child[i].t - parent[j].t) < 2;
+      if (least && !own)
+        found.push_back({{child_yarn, child[i].t}, {parent_yarn, parent[j].t}, d[i * m + j]});
+    }
+  std::sort(found.begin(), found.end(),
+            [](const Touch& a, const Touch& b) { return a.distance < b.distance; });
+  return found;
+}
+
+}  // namespace
+
+std::vector<Foot> feet(const Fabric& fabric) {
+  std::unordered_map<LoopId, const LoopSpan*> spans;
+  for (const LoopSpan& span : fabric.loops) spans[span.loop] = &span;
+  std::vector<Foot> all;
+  for (const PlacedInterlacing& interlacing : fabric.interlacings) {
+    const auto parent = spans.find(interlacing.parent), child = spans.find(interlacing.child);
+    if (parent == spans.end() || child == spans.end()) continue;
+    const LoopSpan &p = *parent->second, &c = *child->second;
+    // Half a loop's own yarn: floats beside it are left out.
+    const double parent_half = std::min(p.apex - p.begin, p.end - p.apex),
+                 child_half = std::min(c.apex - c.begin, c.end - c.apex);
+    const auto end = static_cast<double>(fabric.yarns[static_cast<std::size_t>(c.yarn)].segments());
+    for (const bool first_foot : {true, false}) {
+      const double reach = std::min(first_foot ? c.apex - c.begin : c.end - c.apex, foot_reach * child_half);
+      Foot foot{c.yarn, p.yarn, 0, 0, p.apex - head_share * parent_half, p.apex + head_share * parent_half};
+      foot.begin = std::max(0.0, first_foot ? c.apex - reach : c.apex + above_feet * reach);
+      foot.end = std::min(end, first_foot ? c.apex - above_feet * reach : c.apex + reach);
+      all.push_back(foot);
+    }
+  }
+  return all;
+}
+
+FootContacts foot_contacts(const SplineModel& model, std::span<const Vec3> place, const Foot& foot) {
+  const std::vector<Sample> head = samples(model, place, foot.parent, foot.head_begin, foot.head_end),
+                            line = samples(model, place, foot.child, foot.begin, foot.end);
+  const SplineYarn& yarn = model.yarns[static_cast<std::size_t>(foot.child)];
+  const double diameter = 0.5 * (yarn.diameter + model.yarns[static_cast<std::size_t>(foot.parent)].diameter);
+  FootContacts contacts;
+  for (const Touch& touch : nearest_approaches(line, foot.child, head, foot.parent)) {
+    if (!contacts.touch.empty()) {
+      const auto& [a, b] = contacts.touch[0];
+      const double apart = std::max(distance(curve_point(model, place, foot.child, touch.child.t).place,
+                                             curve_point(model, place, foot.child, a.t).place),
+                                    distance(curve_point(model, place, foot.parent, touch.parent.t).place,
+                                             curve_point(model, place, foot.parent, b.t).place));
+      if (touch.distance > farthest_touch * diameter || apart < least_apart * diameter) continue;
+    }
+    contacts.touch.emplace_back(touch.child, touch.parent);
+    contacts.distance.push_back(touch.distance);
+    if (contacts.touch.size() == 2) break;
+  }
+  return contacts;
+}
+
+}  // namespace loopwright

@@ -201,6 +201,7 @@ Bindings sliding_bindings(const SplineModel& model, std::span<const Vec3> place,
   Bindings bindings;
   for (const Foot& foot : feet) {
     const FootContacts contacts = foot_contacts(model, place, foot);
+    std::vector<SlidingBinding> own;
     for (const auto& [a, b] : contacts.touch) {
       if (!moves(model, place, a) && !moves(model, place, b)) continue;
       SlidingBinding binding;
@@ -208,8 +209,14 @@ Bindings sliding_bindings(const SplineModel& model, std::span<const Vec3> place,
       binding.b = b;
       binding.friction = friction;
       binding.distance = follow(model, place, binding).distance;
-      bindings.sliding.push_back(binding);
+      // Both may have slid to one nearest approach.
+      constexpr double same = 0.25;  // segments
+      const bool known = std::any_of(own.begin(), own.end(), [&](const SlidingBinding& other) {
+        return std::abs(other.a.t - binding.a.t) < same && std::abs(other.b.t - binding.b.t) < same;
+      });
+      if (!known) own.push_back(binding);
     }
+    bindings.sliding.insert(bindings.sliding.end(), own.begin(), own.end());
   }
   return bindings;
 }

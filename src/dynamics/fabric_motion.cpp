@@ -21,7 +21,7 @@ MotionUnits motion_units(const Fabric& fabric, double bend_N_m2) {
   return {d, d * d * std::sqrt(rho / bend_N_m2), bend_N_m2 / (d * d)};
 }
 
-SplineModel spline_model(const Fabric& fabric, const YarnMaterial& material, double set) {
+SplineModel spline_model(const Fabric& fabric, const YarnMaterial& material, double set, bool drawn_lengths) {
   if (fabric.periodic)
     throw std::invalid_argument(
         "yarn in motion needs a piece with edges: a periodic cell has a lattice that cannot move in time");
@@ -38,7 +38,8 @@ SplineModel spline_model(const Fabric& fabric, const YarnMaterial& material, dou
     spline.bend_stiffness = material.bend_stiffness * section;
     spline.diameter = yarn.diameter;
     set_rest_shape(spline, yarn.control_points, set, StretchLaw::mean);
-    spline.rest_length.assign(static_cast<std::size_t>(spline.segments()), yarn.segment_rest_length);
+    if (!drawn_lengths)
+      spline.rest_length.assign(static_cast<std::size_t>(spline.segments()), yarn.segment_rest_length);
     const double density =
         densest > 0 && yarn.linear_density_tex > 0 ? yarn.linear_density_tex / densest : section;
     set_mass_per_parameter(spline, density * yarn.segment_rest_length);

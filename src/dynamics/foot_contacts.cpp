@@ -61,6 +61,30 @@ std::vector<Touch> nearest_approaches(const std::vector<Sample>& child, int chil
   return found;
 }
 
+// Where one line crosses over the other as seen along z: a foot that is drawn through a head is seen behind
+// its leg at one place and in front of its top at another.
+std::vector<Touch> crossings(const std::vector<Sample>& child, int child_yarn,
+                             const std::vector<Sample>& parent, int parent_yarn, double farthest) {
+  std::vector<Touch> found;
+  for (std::size_t i = 0; i + 1 < child.size(); ++i)
+    for (std::size_t j = 0; j + 1 < parent.size(); ++j) {
+      const Vec3 a = child[i + 1].place - child[i].place, b = parent[j + 1].place - parent[j].place,
+                 r = parent[j].place - child[i].place;
+      const double det = a.x * b.y - a.y * b.x;
+      if (det == 0) continue;
+      const double u = (r.x * b.y - r.y * b.x) / det, v = (r.x * a.y - r.y * a.x) / det;
+      if (u < 0 || u >= 1 || v < 0 || v >= 1) continue;
+      const double d = norm(child[i].place + u * a - parent[j].place - v * b);
+      const double s = child[i].t + u * (child[i + 1].t - child[i].t),
+                   t = parent[j].t + v * (parent[j + 1].t - parent[j].t);
+      if (d < farthest && !(child_yarn == parent_yarn && std::abs(s - t) < 2))
+        found.push_back({{child_yarn, s}, {parent_yarn, t}, d});
+    }
+  std::sort(found.begin(), found.end(),
+            [](const Touch& a, const Touch& b) { return a.distance < b.distance; });
+  return found;
+}
+
 }  // namespace
 
 std::vector<Foot> feet(const Fabric& fabric) {
@@ -91,8 +115,12 @@ FootContacts foot_contacts(const SplineModel& model, std::span<const Vec3> place
                             line = samples(model, place, foot.child, foot.begin, foot.end);
   const SplineYarn& yarn = model.yarns[static_cast<std::size_t>(foot.child)];
   const double diameter = 0.5 * (yarn.diameter + model.yarns[static_cast<std::size_t>(foot.parent)].diameter);
+  // Crossings first; where yarns lie side by side instead, the nearest approaches.
+  std::vector<Touch> touches = crossings(line, foot.child, head, foot.parent, farthest_touch * diameter);
+  const std::vector<Touch> approaches = nearest_approaches(line, foot.child, head, foot.parent);
+  touches.insert(touches.end(), approaches.begin(), approaches.end());
   FootContacts contacts;
-  for (const Touch& touch : nearest_approaches(line, foot.child, head, foot.parent)) {
+  for (const Touch& touch : touches) {
     if (!contacts.touch.empty()) {
       const auto& [a, b] = contacts.touch[0];
       const double apart = std::max(distance(curve_point(model, place, foot.child, touch.child.t).place,

@@ -9,8 +9,9 @@ namespace loopwright {
 namespace {
 
 // How far the head of a row reaches over the sinker of the next, and how far the foot bends outward and up:
-// as in the template of the first paper (its T0 to T4), in yarn diameters.
-constexpr double overlap = 3, foot_out = 0.5, foot_up = 1.5;
+// as in the template of the first paper (its T0 to T4), in yarn diameters; outward a
+// fifth more, which Catmull-Rom curves need to pass each other.
+constexpr double overlap = 3, foot_out = 0.6, foot_up = 1.5;
 
 std::array<Vec3, 11> points_with(const JerseyStitch& stitch, double a) {
   const double d = stitch.thickness, w = stitch.wale_spacing, height = stitch.course_spacing + overlap * d;
@@ -65,11 +66,12 @@ std::array<Vec3, 11> jersey_points(const JerseyStitch& stitch) {
   for (const double v : {d, stitch.wale_spacing, stitch.course_spacing})
     if (!std::isfinite(v) || !(v > 0))
       throw std::invalid_argument("a jersey stitch needs a positive thickness, wale and course spacing");
-  // Heads side by side: each is half a wale and a diameter wide.
-  constexpr double least_width = 4, highest = 3;
+  // Heads side by side: each is half a wale and 1.2 diameters wide.
+  constexpr double least_width = 4.4, highest = 3;
   if (stitch.wale_spacing < least_width * d || room(stitch, highest * d) < d)
     throw std::invalid_argument(
-        "the stitches are too dense for the yarn: at least 4 diameters wide, and high enough for two rows to "
+        "the stitches are too dense for the yarn: at least 4.4 diameters wide, and high enough for two rows "
+        "to "
         "pass each other");
   double low = 0, high = highest * d;
   constexpr int halvings = 40;

@@ -16,7 +16,7 @@ namespace loopwright {
 
 struct JerseyStitch {
   double thickness = 1;         // diameter of the yarn
-  double wale_spacing = 4.2;    // width of a stitch: 1 / wales per length
+  double wale_spacing = 4.6;    // width of a stitch: 1 / wales per length
   double course_spacing = 3.5;  // distance of rows: 1 / courses per length
 };
 

@@ -2,10 +2,15 @@
 // src/mechanics are for uniform B-splines, straight yarn and always with their Hessian; on that case they and
 // these agree, which is a test.)
 //
-//   springs  h (1/2 e^2 + hardening/4 e^4) EA,  e = |q_(k+1) - q_k| / h - 1
-//   green    1/2 EA int eps^2 |p0'| du,  eps = (|p'|^2 - |p0'|^2) / (2 |p0'|^2),  |p0'|: speed of the rest
-//   shape mean     1/2 EA h (L/h - 1)^2,  L = int |p'| du bend     1/2 B h int (kappa - kappa_0)^2 du,  kappa
-//   = |p' x p''| / |p'|^3
+//   springs: h (1/2 e^2 + hardening/4 e^4) EA,  e = |q_(k+1) - q_k| / h - 1
+//
+//   green: 1/2 EA int eps^2 |p0'| du,  eps = (|p'|^2 - |p0'|^2) / (2 |p0'|^2),  |p0'|: speed of the rest
+//   shape
+//
+//   mean: 1/2 EA/h [ (L - h)^2 + evenness (int |p'|^2 du - L^2) ],  L = int |p'| du
+//
+//   bend: 1/2 B h int (kappa - kappa_0)^2 du,  kappa = |p' x p''| / |p'|^3
+//
 // 4-point Gauss a segment; h: rest length. Finite displacements after Nocent and Remion, Eurographics
 // workshop on computer animation and simulation 2001, in the form of Green and Lagrange.
 #pragma once

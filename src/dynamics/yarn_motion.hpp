@@ -127,8 +127,10 @@ MotionUnits motion_units(const Fabric& fabric, double bend_N_m2);
 
 // The yarns of a finite fabric (its control points in a row) with the material's stiffness. `set`: share of
 // their curvature that they keep as natural curvature. Throws std::invalid_argument for periodic fabrics:
-// a cell's lattice has no place in motion.
-SplineModel spline_model(const Fabric& fabric, const YarnMaterial& material, double set = 0);
+// a cell's lattice has no place in motion. `drawn_lengths`: every segment is unstretched as it is (first
+// curves are drawn longer or shorter than their yarn); else it has the yarn's own length.
+SplineModel spline_model(const Fabric& fabric, const YarnMaterial& material, double set = 0,
+                         bool drawn_lengths = false);
 MotionState motion_state(const Fabric& fabric);
 // Contact for the same fabric, with a core that fits between its yarns; `history` and plates of the
 // equilibrium that the motion starts from.

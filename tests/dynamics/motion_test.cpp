@@ -163,13 +163,25 @@ TEST(Motion, TransverseWaveSpeedOfAStretchedYarn) {
 // chain of length S over the span D, with 2 a sinh(D / 2a) = S.
 TEST(Motion, HangingChainBecomesACatenary) {
   constexpr int segments = 40;
-  Scene s = straight(segments, 1, 2e5, 0);
-  // ends held by their first and last points, brought together to 24 of 40
+  Scene s = straight(segments, 1, 1e5, 0);
+  // hung up in a parabola whose polygon is a little longer than the chain, its ends 24 of 40 apart
   constexpr double span = 24;
-  for (std::size_t i = 0; i < s.state.place.size(); ++i) {
-    const double u = s.state.place[i].x / segments - 0.5;
-    s.state.place[i] = {span * u, 40 * (u * u - 0.25), 0};
-  }
+  const auto parabola = [&](double depth) {
+    std::vector<Vec3> place;
+    for (int i = 0; i < segments + 3; ++i) {
+      const double u = (i - 1.0) / segments - 0.5;
+      place.push_back({span * u, depth * (4 * u * u - 1), 0});
+    }
+    return place;
+  };
+  const auto length = [](const std::vector<Vec3>& place) {
+    double sum = 0;
+    for (std::size_t i = 0; i + 1 < place.size(); ++i) sum += distance(place[i], place[i + 1]);
+    return sum;
+  };
+  double depth = 5;
+  while (length(parabola(depth)) < segments + 2.1) depth += 0.01;
+  s.state.place = parabola(depth);
   s.model.held.front() = s.model.held.back() = 1;
   s.model.gravity = {0, -1, 0};
   s.model.drag = 1;
@@ -187,8 +199,8 @@ TEST(Motion, HangingChainBecomesACatenary) {
   }
   for (int k = 1; k <= 17; ++k) {
     const CurvePoint p = curve_point(motion.model(), motion.state().place, 0, 20 + k);
-    EXPECT_NEAR(p.place.x - low.place.x, a * std::asinh(k / a), 0.02);
-    EXPECT_NEAR(p.place.y - low.place.y, a * (std::sqrt(1 + k * k / (a * a)) - 1), 0.02);
+    EXPECT_NEAR(p.place.x - low.place.x, a * std::asinh(k / a), 0.04);
+    EXPECT_NEAR(p.place.y - low.place.y, a * (std::sqrt(1 + k * k / (a * a)) - 1), 0.04);
   }
   // and the span over the length is that of the whole chain, the loose ends of the spline left out
   EXPECT_NEAR(2 * a * std::sinh((far.place.x - low.place.x) / a), 30, 0.02);

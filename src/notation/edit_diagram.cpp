@@ -276,7 +276,8 @@ std::string insert_line(Vermiculation& notation, std::size_t line, const CourseL
   if (courses_in(notation.written, 0, notation.written.size()) == notation.lines.size()) {
     std::size_t place = place_of(notation.written, line, true);
     // comments on lines of their own go with the course below them
-    while (line > 0 && line < notation.lines.size() && notation.written[place - 1].kind == Kind::text) --place;
+    while (line > 0 && line < notation.lines.size() && notation.written[place - 1].kind == Kind::text)
+      --place;
     notation.written.insert(notation.written.begin() + static_cast<std::ptrdiff_t>(place),
                             {Kind::course, write_course(course, notation.yarns), 1});
   }

@@ -1,6 +1,7 @@
 #include "notation/parse_course.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "notation/scan.hpp"
@@ -75,6 +76,12 @@ class CourseParser {
 
   CourseLine course_line() {
     CourseLine line;
+    if (const std::string_view word = knitout_word(); !word.empty()) {
+      error(text_.find(word), quoted(word) +
+                                  " is knitout; a fabric file has a letter for each needle, e.g. 'gge'. A "
+                                  "knitout file starts with ';!knitout-2'");
+      return line;
+    }
     while (true) {
       line.passes.push_back(read_pass());
       if (at_ == text_.size()) return line;
@@ -95,6 +102,16 @@ class CourseParser {
     const auto found =
         std::find_if(yarns_.begin(), yarns_.end(), [&](const auto& yarn) { return yarn.name == name; });
     return found == yarns_.end() ? nullptr : &*found;
+  }
+
+  // The word that starts the line if it is an operation of knitout.
+  std::string_view knitout_word() const {
+    static constexpr std::array<std::string_view, 14> words{
+        "knit", "tuck", "split",  "miss",        "drop", "amiss",   "xfer",
+        "rack", "in",   "inhook", "releasehook", "out",  "outhook", "pause"};
+    Word first;
+    if (!WordReader(text_).next(first)) return {};
+    return std::find(words.begin(), words.end(), first.text) == words.end() ? std::string_view() : first.text;
   }
 
   // Up to '&' or the end of the line.
@@ -153,6 +170,8 @@ class CourseParser {
         } else {
           pass.yarns.push_back(place);
         }
+      } else if (!name.empty() && name.find_first_not_of("gevnsStTdDRr.-()*/ ") == name.npos) {
+        error(end, std::string("'") + text_[end] + "' stands before the letters of a pass, not after them");
       } else if (name.empty()) {
         error(std::min(begin, end), "expected the name of a yarn before '+', ':', '<' or '>'");
       } else {
@@ -305,7 +324,18 @@ class CourseParser {
     std::string hint =
         "letters are g e (stitch on the front, rear bed) v n (tuck) s S (split) t T (transfer) d D (drop) "
         "R r (racking) . (missed) - (inactive)";
-    if (letter == "k" || letter == "K")
+    const char small = letter.size() == 1 ? lower_case(letter).front() : ' ';
+    if (letter == "G" || letter == "E" || letter == "V" || letter == "N")
+      hint = std::string("letters of stitches and tucks are small: '") + small + "'";
+    else if (letter == "_")
+      hint = "a missed needle is '.', an inactive one '-'";
+    else if (letter == "," || letter == "|")
+      hint = "letters stand side by side, blanks mean nothing; remove it";
+    else if (is_digit(letter.front()))
+      hint = "repeat a letter or a group by '*n' after it, e.g. 'g*2' or '(ge)*2'";
+    else if (letter == "#")
+      return give_up(index, "unknown letter '#'; a comment starts with ';'");
+    else if (letter == "k" || letter == "K")
       hint = "a stitch on the front bed is 'g'";
     else if (letter == "p" || letter == "P")
       hint = "a stitch on the rear bed is 'e'";

@@ -14,7 +14,7 @@ TEST(ReadKnitout, EveryOperation) {
   Diagnostics diagnostics("all.k");
   const Program program = read_knitout(
       ";!knitout-2\n;;Carriers: 1 2 L3\n;;Gauge: 15\ninhook 1\ntuck - f-3 1\nreleasehook 1\nin 2 L3\n"
-      "knit + f+3 2 L3 ; plated\nsplit - bs7 f7 1;\nmiss + b10000 2\ndrop f1\namiss fs-0\nxfer f1 b2\n"
+      "knit + f3 2 L3 ; plated\nsplit - bs7 f7 1;\nmiss + b10000 2\ndrop f1\namiss fs-0\nxfer f1 b2\n"
       "rack -0.75\nrack +1\nstitch -5 10.5\npause\nx-stitch-number 101\nx-vis-color #ff8800 2\nknit + f1\n"
       "outhook 1\nout 2 L3\n",
       diagnostics);
@@ -44,6 +44,14 @@ TEST(ReadKnitout, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(said_of("in 1\n"), HasSubstr("x.k:1:1: error: the first line is not ';!knitout-2' but 'in 1'"));
   EXPECT_THAT(said_of(";!knitout-2\nin 1\n"), HasSubstr("the Carriers header is missing"));
   EXPECT_THAT(said_of(";!knitout-3\n;;Carriers: 1\n"), HasSubstr("x.k:1:11: warning: version 3 is newer"));
+  EXPECT_THAT(said_of("\xef\xbb\xbf;!knitout-2\n;;Carriers: 1\n"),
+              HasSubstr("x.k:1:1: error: the file starts with a byte-order mark"));
+  EXPECT_THAT(said_of(";!knitout-2 \n;;Carriers: 1\n"),
+              HasSubstr("x.k:1:12: error: a blank in the first line"));
+  EXPECT_THAT(said_of(";!knitout- 2\n;;Carriers: 1\n"),
+              HasSubstr("x.k:1:11: error: a blank in the first line"));
+  EXPECT_THAT(said_of(head + "drop f+5"),
+              HasSubstr("x.k:3:7: error: a needle's number has no '+'; write 'f5'"));
   EXPECT_THAT(said_of(head + "purl + f1 1"), HasSubstr("x.k:3:1: error: unknown operation 'purl'"));
   EXPECT_THAT(said_of(head + "  knit x f1 1"),
               HasSubstr("x.k:3:8: error: expected a direction, + or -, not 'x'"));

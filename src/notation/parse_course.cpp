@@ -120,10 +120,10 @@ class CourseParser {
     skip_blanks();
     pass.at = here(at_);
     const std::size_t begin = at_;
+    const std::size_t errors_before = static_cast<std::size_t>(diagnostics_.errors());
     const std::string_view rest = text_.substr(at_);
     const std::size_t head_end = rest.substr(0, rest.find('&')).find_first_of(":<>");
     if (head_end != std::string_view::npos) read_head(pass, at_ + head_end);
-    const std::size_t errors_before = static_cast<std::size_t>(diagnostics_.errors());
     Row front = read_row();
     Row rear;
     if (at_ < text_.size() && text_[at_] == '/') {

@@ -44,6 +44,23 @@ TEST(ReadKnitout, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(said_of("in 1\n"), HasSubstr("x.k:1:1: error: the first line is not ';!knitout-2' but 'in 1'"));
   EXPECT_THAT(said_of(";!knitout-2\nin 1\n"), HasSubstr("the Carriers header is missing"));
   EXPECT_THAT(said_of(";!knitout-3\n;;Carriers: 1\n"), HasSubstr("x.k:1:11: warning: version 3 is newer"));
+  EXPECT_THAT(said_of(head + "in 1 # left"),
+              HasSubstr("x.k:3:6: error: '#' starts no comment in knitout; write ';'"));
+  EXPECT_THAT(said_of(head + "Knit + f1 1"),
+              HasSubstr("x.k:3:1: error: unknown operation 'Knit'; write 'knit'"));
+  EXPECT_THAT(said_of(head + "tcuk + f1 1"), HasSubstr("unknown operation 'tcuk'; write 'tuck'"));
+  EXPECT_THAT(said_of(head + "purl + f1 1"), HasSubstr("unknown operation 'purl'; knitout knows"));
+  EXPECT_THAT(said_of(head + "knit f1 1"),
+              HasSubstr("x.k:3:6: error: expected a direction, + or -, not 'f1'; the "
+                        "direction stands before the needle, e.g. '+ f1'"));
+  EXPECT_THAT(said_of(head + "drop F1"), HasSubstr("not 'F1'; beds are written small, 'f1'"));
+  EXPECT_THAT(said_of(head + "drop f 1"), HasSubstr("not 'f'; its number follows without a blank"));
+  EXPECT_THAT(said_of(head + "rack 0,25"), HasSubstr("not '0,25'; write a point for the comma"));
+  EXPECT_THAT(said_of(";!knitout-2\n;;carriers: 1\n"),
+              HasSubstr("x.k:2:3: warning: unknown header 'carriers' is "
+                        "left out; write 'Carriers'"));
+  EXPECT_THAT(said_of(";!knitout-2\n;;Carriers:1 2\n"),
+              HasSubstr("x.k:2:12: warning: a blank is missing after the colon"));
   EXPECT_THAT(said_of("\xef\xbb\xbf;!knitout-2\n;;Carriers: 1\n"),
               HasSubstr("x.k:1:1: error: the file starts with a byte-order mark"));
   EXPECT_THAT(said_of(";!knitout-2 \n;;Carriers: 1\n"),

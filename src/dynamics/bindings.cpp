@@ -209,8 +209,10 @@ Bindings sliding_bindings(const SplineModel& model, std::span<const Vec3> place,
       binding.b = b;
       binding.friction = friction;
       binding.distance = follow(model, place, binding).distance;
+      // Along one yarn the way downhill may lead both to one point: that is no touch.
+      if (a.yarn == b.yarn && std::abs(binding.a.t - binding.b.t) < 2) continue;
       // Both may have slid to one nearest approach.
-      constexpr double same = 0.25;  // segments
+      constexpr double same = 0.75;  // segments
       const bool known = std::any_of(own.begin(), own.end(), [&](const SlidingBinding& other) {
         return std::abs(other.a.t - binding.a.t) < same && std::abs(other.b.t - binding.b.t) < same;
       });

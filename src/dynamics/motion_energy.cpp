@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <tuple>
 
 #include "dynamics/motion_solver.hpp"
 #include "dynamics/yarn_motion.hpp"
@@ -34,7 +35,7 @@ YarnMotion::YarnMotion(SplineModel model, MotionState state, Bindings bindings, 
   }
   multiplier_.assign(bindings_.barycentric.size(), Vec3{});
   for (SlidingBinding& binding : bindings_.sliding) follow(model_, state_.place, binding);
-  prepare_friction();
+  prepare_friction(1);
   if (contact_) {
     solver_->assembly = std::make_unique<Assembly>(contact_->model);
     solver_->assembly->set_history(contact_->history);
@@ -58,20 +59,72 @@ void YarnMotion::weigh(std::span<const Vec3> x, std::vector<Vec3>& y) const {
 }
 
 // Takes down load, normal and place of every sliding contact, as friction keeps them through a step.
-void YarnMotion::prepare_friction() {
+void YarnMotion::prepare_friction(double dt) {
+  merge_sliding();
   friction_.resize(bindings_.sliding.size());
   start_.resize(bindings_.sliding.size());
   for (std::size_t k = 0; k < friction_.size(); ++k) {
     SlidingBinding& binding = bindings_.sliding[k];
     start_[k] = follow(model_, state_.place, binding);
+    // The nearest approach has ended and the free variables have gone on to another one: bound there from
+    // now.
+    constexpr double elsewhere = 0.05;
+    if (std::abs(start_[k].distance - binding.distance) > elsewhere) {
+      binding.distance = start_[k].distance;
+      binding.multiplier = 0;
+      binding.slip = {};
+      ++rebound_;
+    }
     Friction& law = friction_[k];
     law.load = binding.friction * std::abs(binding.multiplier);
+    // An explicit step holds only springs that are soft against the mass on them, about one unit.
+    if (options_.integrator == Integrator::explicit_euler)
+      law.softness = std::max(law.softness, 8 * law.load * dt * dt);
     law.normal = start_[k].normal;
     law.slip = law.tangential(binding.slip);
     law.weight_a = start_[k].a.weights.value;
     law.weight_b = start_[k].b.weights.value;
     law.start = start_[k].a.place - start_[k].b.place;
   }
+}
+
+// Two nearest approaches of a foot can grow into one as the yarns turn: from then on one binding holds it, at
+// the distance that is there.
+void YarnMotion::merge_sliding() {
+  constexpr double same = 0.75;  // segments; nearer, the two would fight over one distance
+  std::vector<SlidingBinding>& all = bindings_.sliding;
+  for (SlidingBinding& binding : all) follow(model_, state_.place, binding);
+  std::sort(all.begin(), all.end(), [](const SlidingBinding& p, const SlidingBinding& q) {
+    return std::tie(p.a.yarn, p.b.yarn, p.a.t, p.b.t) < std::tie(q.a.yarn, q.b.yarn, q.a.t, q.b.t);
+  });
+  for (std::size_t k = 1; k < all.size();) {
+    SlidingBinding &kept = all[k - 1], &other = all[k];
+    const bool merged = kept.a.yarn == other.a.yarn && kept.b.yarn == other.b.yarn &&
+                        std::abs(kept.a.t - other.a.t) < same && std::abs(kept.b.t - other.b.t) < same;
+    if (!merged) {
+      ++k;
+      continue;
+    }
+    kept.distance = follow(model_, state_.place, kept).distance;
+    kept.multiplier = 0;
+    kept.slip = {};
+    all.erase(all.begin() + static_cast<std::ptrdiff_t>(k));
+    ++rebound_;
+  }
+}
+
+// Whether a sliding binding has anything to move: where it has slid between held points it stands for
+// nothing.
+bool YarnMotion::can_move(const Connection& connection) const {
+  constexpr double least = 1e-2;
+  double sum = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto a = static_cast<std::size_t>(connection.a.first) + i,
+               b = static_cast<std::size_t>(connection.b.first) + i;
+    if (model_.held[a] == 0) sum += connection.a.weights.value[i] * connection.a.weights.value[i];
+    if (model_.held[b] == 0) sum += connection.b.weights.value[i] * connection.b.weights.value[i];
+  }
+  return sum > least;
 }
 
 namespace {
@@ -194,8 +247,11 @@ double YarnMotion::constraint_error() const {
   double largest = 0;
   for (const BarycentricBinding& binding : bindings_.barycentric)
     largest = std::max(largest, norm(binding.error(state_.place)));
-  for (SlidingBinding binding : bindings_.sliding)
-    largest = std::max(largest, std::abs(follow(model_, state_.place, binding).distance - binding.distance));
+  for (SlidingBinding binding : bindings_.sliding) {
+    const Connection c = follow(model_, state_.place, binding);
+    if (can_move(c)) largest = std::max(largest, std::abs(c.distance - binding.distance));
+  }
+
   return largest;
 }
 

@@ -12,6 +12,10 @@ namespace loopwright {
 
 // Weight of -eps in [H J'; J -eps]: small against J H^-1 J', large against rounding.
 inline constexpr double saddle_softness = 1e-10;
+// The same for sliding bindings of an explicit step, against about 1 over a control point's mass: where the
+// two touches of a foot come near each other they contradict each other, and this bounds what they do about
+// it.
+inline constexpr double sliding_softness = 1e-2;
 
 struct YarnMotion::Solver {
   SaddleSolver saddle;

@@ -79,7 +79,7 @@ StepReport YarnMotion::step(double dt, std::span<const Vec3> held_place) {
 StepReport YarnMotion::explicit_step(double dt) {
   const std::size_t n = state_.place.size(), joints = bindings_.barycentric.size(),
                     slides = bindings_.sliding.size();
-  prepare_friction();
+  prepare_friction(dt);
   std::vector<Vec3> force, right, still(n);
   gradient(state_.place, force, nullptr);
   // Right side: momentum after the loads; held points carry theirs to their neighbours.
@@ -129,8 +129,9 @@ StepReport YarnMotion::explicit_step(double dt) {
         }
       for (std::size_t k = 0; k < slides; ++k) {
         const Connection& c = start_[k];
-        drift[k] = -back * (c.distance - bindings_.sliding[k].distance);
-        for (std::size_t i = 0; i < 8; ++i) {
+        drift[k] = 0;
+        if (can_move(c)) drift[k] = -back * (c.distance - bindings_.sliding[k].distance);
+        for (std::size_t i = 0; can_move(c) && i < 8; ++i) {
           const int point = i < 4 ? c.a.first + static_cast<int>(i) : c.b.first + static_cast<int>(i) - 4;
           const double w = i < 4 ? c.a.weights.value[i] : -c.b.weights.value[i - 4];
           for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -141,7 +142,7 @@ StepReport YarnMotion::explicit_step(double dt) {
               drift[k] -= entry * state_.velocity[at(point)][static_cast<int>(axis)];
           }
         }
-        saddle.add(slide_row(k), slide_row(k), -saddle_softness);
+        saddle.add(slide_row(k), slide_row(k), -sliding_softness);
       }
       if (!saddle.factor()) throw std::runtime_error("the bindings' matrix cannot be factored");
       solver_->explicit_factored = true;
@@ -185,7 +186,7 @@ bool YarnMotion::implicit_step(double dt, StepReport& report) {
   const std::size_t n = state_.place.size(), joints = bindings_.barycentric.size(),
                     slides = bindings_.sliding.size(), unknowns = 3 * n,
                     rows = unknowns + 3 * joints + slides;
-  prepare_friction();
+  prepare_friction(dt);
   const std::vector<Vec3> inertial = inertial_place(dt);
   std::vector<Vec3> x = state_.place, g, apart(n), heavy;
   for (std::size_t i = 0; i < n; ++i)
@@ -200,8 +201,10 @@ bool YarnMotion::implicit_step(double dt, StepReport& report) {
       const Vec3 c = binding.error(place);
       sum += std::abs(c.x) + std::abs(c.y) + std::abs(c.z);
     }
-    for (SlidingBinding binding : bindings_.sliding)
-      sum += std::abs(follow(model_, place, binding).distance - binding.distance);
+    for (SlidingBinding binding : bindings_.sliding) {
+      const Connection c = follow(model_, place, binding);
+      if (can_move(c)) sum += std::abs(c.distance - binding.distance);
+    }
     return sum;
   };
 
@@ -230,7 +233,10 @@ bool YarnMotion::implicit_step(double dt, StepReport& report) {
     for (std::size_t k = 0; k < slides; ++k) {
       SlidingBinding& binding = bindings_.sliding[k];
       now[k] = follow(model_, x, binding);
-      most_off = std::max(most_off, std::abs(now[k].distance - binding.distance));
+      if (!can_move(now[k]))
+        binding.multiplier = 0;
+      else
+        most_off = std::max(most_off, std::abs(now[k].distance - binding.distance));
       for (std::size_t i = 0; i < 4; ++i) {
         g[at(now[k].a.first) + i] += (binding.multiplier * now[k].a.weights.value[i]) * now[k].normal;
         g[at(now[k].b.first) + i] -= (binding.multiplier * now[k].b.weights.value[i]) * now[k].normal;
@@ -346,7 +352,7 @@ bool YarnMotion::implicit_step(double dt, StepReport& report) {
         }
       for (std::size_t k = 0; k < slides; ++k) {
         const std::array<int, 8> point = points_of(now[k].a, now[k].b);
-        for (std::size_t i = 0; i < 8; ++i)
+        for (std::size_t i = 0; can_move(now[k]) && i < 8; ++i)
           for (std::size_t c = 0; c < 3; ++c)
             if (free_point(point[i]))
               saddle.add(slide_row(k), row(at(point[i]), c),
@@ -367,7 +373,7 @@ bool YarnMotion::implicit_step(double dt, StepReport& report) {
       for (std::size_t a = 0; a < 3; ++a) b[unknowns + 3 * k + a] = -c[static_cast<int>(a)];
     }
     for (std::size_t k = 0; k < slides; ++k)
-      b[unknowns + 3 * joints + k] = bindings_.sliding[k].distance - now[k].distance;
+      b[unknowns + 3 * joints + k] = can_move(now[k]) ? bindings_.sliding[k].distance - now[k].distance : 0;
     saddle.solve(b);
 
     // The whole step, unless it is longer than the yarns are thick or raises energy + penalty |C|.

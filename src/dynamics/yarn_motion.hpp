@@ -88,6 +88,9 @@ class YarnMotion {
   // `width`: the force that a frame of that width carries at rest, contact included.
   double course_force(double width) const;
   double contact_core() const;  // 0 without contact
+  // How often a sliding binding had to be set anew, because the nearest approach that it followed had ended
+  // or had become one with its neighbour.
+  int rebound() const { return rebound_; }
 
  private:
   struct Solver;
@@ -95,7 +98,9 @@ class YarnMotion {
   bool implicit_step(double dt, StepReport& report);
   bool contact_step(double dt, StepReport& report);
   void grow_core();
-  void prepare_friction();
+  void prepare_friction(double dt);
+  void merge_sliding();
+  bool can_move(const Connection& connection) const;
   void accept_friction();
   double potential(const std::vector<Vec3>& place) const;
   double gradient(const std::vector<Vec3>& place, std::vector<Vec3>& g, BandHessian* band) const;
@@ -108,6 +113,7 @@ class YarnMotion {
   Bindings bindings_;
   MotionOptions options_;
   std::optional<FabricContact> contact_;
+  int rebound_ = 0;
   std::vector<BandMatrix> mass_;
   std::vector<double> lumped_;      // row sums of M
   std::vector<Vec3> multiplier_;    // of barycentric bindings

@@ -259,10 +259,23 @@ std::vector<RoundMeasure> round_measures(const YarnGraph& graph, const RelaxedLa
       measure.perimeter += distance(p, q);
       area += cross(p - ring[0], q - ring[0]) / 2;
     }
+    for (const Vec3& p : ring) measure.centre += p / static_cast<double>(ring.size());
+    measure.area = area;
     measure.roundness = norm(area) * 4 * std::numbers::pi / (measure.perimeter * measure.perimeter);
     measures.push_back(measure);
   }
   return measures;
+}
+
+double enclosed_volume(const std::vector<RoundMeasure>& rounds) {
+  double volume = 0;
+  for (std::size_t k = 0; k + 1 < rounds.size(); ++k) {
+    const Vec3 way = rounds[k + 1].centre - rounds[k].centre;
+    // the next round of the programme may belong to another tube
+    if (norm(way) < rounds[k].perimeter / 2)
+      volume += std::abs(dot((rounds[k].area + rounds[k + 1].area) / 2, way));
+  }
+  return volume;
 }
 
 }  // namespace loopwright

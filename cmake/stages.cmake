@@ -1,6 +1,6 @@
 # One static library per stage, linked in the order of the road: a stage sees only stages to its left.
-# base -> notation -> machine -> topology -> geometry -> loop_scale -> mechanics -> experiments -> outputs -> apps
-set(LOOPWRIGHT_STAGES base notation machine topology geometry loop_scale mechanics experiments outputs)
+# base -> notation -> machine -> topology -> geometry -> loop_scale -> mechanics -> dynamics -> experiments -> outputs -> apps
+set(LOOPWRIGHT_STAGES base notation machine topology geometry loop_scale mechanics dynamics experiments outputs)
 set(stage_to_the_left loopwright_options)
 foreach(stage IN LISTS LOOPWRIGHT_STAGES)
   file(GLOB_RECURSE stage_sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/src/${stage}/*.cpp)

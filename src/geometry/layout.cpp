@@ -221,17 +221,57 @@ void lower_tucks(const YarnGraph& graph, const GeometryOptions& options, Layout&
   constexpr double step = 0.35;  // of a course
   for (std::vector<LoopId> stack : head_stacks(graph)) {
     std::sort(stack.begin(), stack.end(), [](LoopId a, LoopId b) { return b < a; });
-    double above = layout.upper[stack.front().position()].y;
+    const Rotation turn = layout.upper_turn(stack.front());
+    double above = turn.transposed(layout.upper[stack.front().position()]).y;
     for (const LoopId id : stack) {
       if (graph.loop(id).kind != LoopKind::tuck) continue;
-      double& y = layout.lower[id.position()].y;
-      y = std::min(y, above - step * options.course_pitch);
-      above = y;
+      Vec3 lower = turn.transposed(layout.lower[id.position()]);
+      lower.y = std::min(lower.y, above - step * options.course_pitch);
+      above = lower.y;
+      layout.lower[id.position()] = turn * lower;
     }
   }
 }
 
+// How large the template is at every binding point.
+void fit_templates(const YarnGraph& graph, const GeometryOptions& options, Nodes& nodes, Layout& layout) {
+  // A binding point with little room above or below it gets a flatter template, the same for all that meet
+  // there.
+  const std::size_t n = graph.loops.size();
+  std::vector<double> scale(2 * n, 1);
+  for (std::size_t i = 0; i < n; ++i) {
+    if (graph.loops[i].kind == LoopKind::tuck) continue;
+    const Vec3 step = layout.step(LoopId(i));
+    const double room = std::hypot(step.x, step.y) / (0.75 * options.course_pitch);
+    for (const std::size_t node : {nodes.lower(LoopId(i)), nodes.upper(LoopId(i))})
+      scale[node] = std::clamp(room, 0.3, scale[node]);
+  }
+  // The loops of a bind-off's chain lie flat from one wale to the next and need room between the heads there.
+  constexpr double narrow = 0.7, flat = 0.3;
+  std::vector<double> width(2 * n, 1);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec3 step = layout.step(LoopId(i));
+    if (step.y >= flat * std::hypot(step.x, step.y)) continue;
+    width[nodes.lower(LoopId(i))] = width[nodes.upper(LoopId(i))] = narrow;
+  }
+  layout.y_scale_lower.clear(), layout.y_scale_upper.clear();
+  layout.x_scale_lower.clear(), layout.x_scale_upper.clear();
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t low = nodes.lower(LoopId(i)), high = nodes.upper(LoopId(i));
+    layout.y_scale_lower.push_back(scale[low]);
+    layout.y_scale_upper.push_back(scale[high]);
+    layout.x_scale_lower.push_back(width[low]);
+    layout.x_scale_upper.push_back(width[high]);
+  }
+}
+
 }  // namespace
+
+Rotation Layout::turn(LoopId id) const {
+  if (is_flat()) return {};
+  const Rotation &low = turn_lower[id.position()], &high = turn_upper[id.position()];
+  return mean_rotation({low.x + high.x, low.y + high.y, low.z + high.z}, low);
+}
 
 double slots_per_wale(const YarnGraph& graph) {
   std::set<double> slots[2];
@@ -295,31 +335,21 @@ Layout lay_out(const YarnGraph& graph, const GeometryOptions& options) {
     layout.upper[i] = {slot[high] * layout.slot_pitch, y[static_cast<Eigen::Index>(high)], z[high]};
   }
   lower_tucks(graph, options, layout);
-  // A binding point with little room above or below it gets a flatter template, the same for all that meet
-  // there.
-  std::vector<double> scale(2 * n, 1);
-  for (std::size_t i = 0; i < n; ++i) {
-    if (graph.loops[i].kind == LoopKind::tuck) continue;
-    const Vec3 step = layout.upper[i] - layout.lower[i];
-    const double room = std::hypot(step.x, step.y) / (0.75 * options.course_pitch);
-    for (const std::size_t node : {nodes.lower(LoopId(i)), nodes.upper(LoopId(i))})
-      scale[node] = std::clamp(room, 0.3, scale[node]);
-  }
-  // The loops of a bind-off's chain lie flat from one wale to the next and need room between the heads there.
-  constexpr double narrow = 0.7, flat = 0.3;
-  std::vector<double> width(2 * n, 1);
-  for (std::size_t i = 0; i < n; ++i) {
-    const Vec3 step = layout.upper[i] - layout.lower[i];
-    if (step.y >= flat * std::hypot(step.x, step.y)) continue;
-    width[nodes.lower(LoopId(i))] = width[nodes.upper(LoopId(i))] = narrow;
-  }
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::size_t low = nodes.lower(LoopId(i)), high = nodes.upper(LoopId(i));
-    layout.y_scale_lower.push_back(scale[low]);
-    layout.y_scale_upper.push_back(scale[high]);
-    layout.x_scale_lower.push_back(width[low]);
-    layout.x_scale_upper.push_back(width[high]);
-  }
+  fit_templates(graph, options, nodes, layout);
+  return layout;
+}
+
+Layout moved_layout(const YarnGraph& graph, const GeometryOptions& options, const Layout& flat,
+                    MovedPlaces places) {
+  Layout layout = flat;
+  layout.lower = std::move(places.lower);
+  layout.upper = std::move(places.upper);
+  layout.turn_lower = std::move(places.turn_lower);
+  layout.turn_upper = std::move(places.turn_upper);
+  layout.wall = std::move(places.wall);
+  lower_tucks(graph, options, layout);
+  Nodes nodes = binding_nodes(graph);
+  fit_templates(graph, options, nodes, layout);
   return layout;
 }
 

@@ -11,17 +11,27 @@ namespace {
 
 constexpr double float_gap = 2.2;  // between a float and what it passes, in r
 
+// Where a float passes held loops: a place, and the turn of the cloth there.
 struct Pass {
-  double x = 0, y = 0, z = 0;
+  Vec3 place;  // before the turn
+  Rotation turn;
+};
+
+// The yarn between two loops, from half a wale beside the one to half a wale beside the other.
+struct Way {
+  Vec3 begin, end;            // where it is
+  Vec3 flat_begin, flat_end;  // in the flat layout, where x is the needles'
+  double ahead() const { return flat_end.x > flat_begin.x ? 1 : -1; }
 };
 
 class SinkerPlacer {
  public:
   SinkerPlacer(const YarnGraph& graph, const GeometryOptions& options, const std::vector<LoopSigns>& signs,
-               const PlacedPiece& piece)
+               const Layout& flat, const PlacedPiece& piece)
       : graph_(graph),
         options_(options),
         signs_(signs),
+        flat_(flat),
         piece_(piece),
         events_(held_events(graph)),
         stacks_(stacks_of_heads(graph)),
@@ -32,8 +42,9 @@ class SinkerPlacer {
   PlacedSinker end(LoopId id, bool first) const {
     const double side = first ? entry_side(id) : exit_side(id);
     PlacedSinker sinker;
-    const TypePoint near = point(id, LoopPart::span, hanging(id, side));
-    const TypePoint last = point(id, LoopPart::sinker, near.position + Vec3{side * sx_, -0.5 * sy_, 0});
+    const TypePoint near = point(id, LoopPart::span, hanging(piece_.layout, id, side));
+    const Vec3 on = piece_.layout.lower_turn(id) * Vec3{side * sx_, -0.5 * sy_, 0};
+    const TypePoint last = point(id, LoopPart::sinker, near.position + on);
     sinker.points = first ? std::vector<TypePoint>{last, near} : std::vector<TypePoint>{near, last};
     sinker.middle = first ? 0 : 1;
     return sinker;
@@ -43,33 +54,32 @@ class SinkerPlacer {
     const Float& yarn_float =
         graph_.yarns[static_cast<std::size_t>(yarn)].floats[static_cast<std::size_t>(gap)];
     const LoopId from = yarn_float.from, to = yarn_float.to;
-    const Vec3 begin = hanging(from, exit_side(from)), end_point = hanging(to, entry_side(to));
+    const Layout& layout = piece_.layout;
+    const Way whole{hanging(layout, from, exit_side(from)), hanging(layout, to, entry_side(to)),
+                    hanging(flat_, from, exit_side(from)), hanging(flat_, to, entry_side(to))};
     PlacedSinker sinker;
     sinker.extra_length = extra_length(graph_.loop(from), graph_.loop(to));
-    std::vector<Pass> passes;
     const double pitch = 8 * sx_;
-    const bool short_span = std::abs(end_point.x - begin.x) < 0.75 * pitch;
-    if (!short_span) passes = passed(yarn, gap, begin, end_point);
-    if (short_span) {
-      Vec3 middle = (begin + end_point) / 2;
+    if (along_course(from, to, whole) < 0.75 * pitch) {
+      Vec3 middle = (whole.begin + whole.end) / 2;
       // Between two loops that go through one head both ways the sinker goes round that head's leg, below it.
       const Loop &first = graph_.loop(from), &second = graph_.loop(to);
       const bool both_ways =
           first.side != second.side &&
           std::find_first_of(first.parents.begin(), first.parents.end(), second.parents.begin(),
                              second.parents.end()) != first.parents.end();
-      if (both_ways) middle.y -= 2 * sy_;
+      const Rotation turn = layout.lower_turn(from);
+      if (both_ways) middle -= turn.y * (2 * sy_);
       // A turn at a selvedge swings out a little.
-      if (exit_side(from) == entry_side(to)) middle.x += exit_side(from) * 0.5 * sx_;
+      if (exit_side(from) == entry_side(to)) middle += turn.x * (exit_side(from) * 0.5 * sx_);
       sinker.points = {point(from, LoopPart::sinker, middle)};
       return sinker;
     }
-    std::vector<Vec3> way{begin};
-    for (const Pass& pass : passes) {
-      const double ahead = end_point.x > begin.x ? 1 : -1;
-      for (const double side : {-ahead, ahead}) way.push_back({pass.x + side * 2.6 * sx_, pass.y, pass.z});
-    }
-    way.push_back(end_point);
+    std::vector<Vec3> way{whole.begin};
+    for (const Pass& pass : passed(yarn, gap, whole))
+      for (const double side : {-whole.ahead(), whole.ahead()})
+        way.push_back(pass.turn * (pass.place + Vec3{side * 2.6 * sx_, 0, 0}));
+    way.push_back(whole.end);
     way = fill(way, pitch);
     sinker.middle = middle_of(way);
     for (std::size_t k = 0; k < way.size(); ++k)
@@ -90,13 +100,24 @@ class SinkerPlacer {
   double exit_side(LoopId id) const { return -entry_side(id); }
 
   // T0 or T8 as it hangs from a loop's own binding point, half a wale beside it.
-  Vec3 hanging(LoopId id, double side) const {
+  Vec3 hanging(const Layout& layout, LoopId id, double side) const {
     const std::size_t i = id.position();
     const LoopSigns& sign = signs_[i];
     // Where the foot reaches behind several heads, the sinker does not come back in between them.
     const double foot = sign.s * sign.foot + 0.6;
     const double z = sign.s * std::min(sign.s * sign.foot_layer - 1.5, foot);
-    return piece_.layout.lower[i] + Vec3{4 * side * sx_, -3 * sy_ * piece_.layout.y_scale_lower[i], z * r_};
+    return layout.lower[i] +
+           layout.lower_turn(id) * Vec3{4 * side * sx_, -3 * sy_ * layout.y_scale_lower[i], z * r_};
+  }
+
+  // How far the yarn goes along the course; the whole distance where the two loops face different ways, as
+  // round the edge of a tube.
+  double along_course(LoopId from, LoopId to, const Way& way) const {
+    const Layout& layout = piece_.layout;
+    const Rotation a = layout.lower_turn(from), b = layout.lower_turn(to);
+    if (dot(a.x, b.x) < 0.3) return distance(way.begin, way.end);
+    const Rotation turn = layout.is_flat() ? a : mean_rotation({a.x + b.x, a.y + b.y, a.z + b.z}, a);
+    return std::abs(turn.transposed(way.end).x - turn.transposed(way.begin).x);
   }
 
   double extra_length(const Loop& from, const Loop& to) const {
@@ -107,12 +128,12 @@ class SinkerPlacer {
 
   // Lowest and highest z near height y of what belongs to a held loop: its legs, the head below, the feet
   // above.
-  void z_range(LoopId held, double y, double& low, double& high) const {
+  void z_range(LoopId held, const Rotation& turn, double y, double& low, double& high) const {
     const double window = 2.5 * sy_;
     const auto take = [&](const PlacedLoop& loop) {
       for (std::size_t k = 0; k + 1 < loop.points.size(); ++k)
         for (const double u : {0.0, 0.25, 0.5, 0.75, 1.0}) {
-          const Vec3 p = loop.points[k].position * (1 - u) + loop.points[k + 1].position * u;
+          const Vec3 p = turn.transposed(loop.points[k].position * (1 - u) + loop.points[k + 1].position * u);
           if (std::abs(p.y - y) > window) continue;
           low = std::min(low, p.z);
           high = std::max(high, p.z);
@@ -124,12 +145,17 @@ class SinkerPlacer {
     for (const LoopId child : loop.children) take(piece_.loops[child.position()]);
   }
 
-  std::vector<Pass> passed(int yarn, int gap, const Vec3& begin, const Vec3& end_point) const {
+  std::vector<Pass> passed(int yarn, int gap, const Way& way) const {
     const Float& yarn_float =
         graph_.yarns[static_cast<std::size_t>(yarn)].floats[static_cast<std::size_t>(gap)];
     std::vector<PassedLoop> loops = yarn_float.passed;
-    add_own_wales(yarn_float, begin, end_point, loops);
-    const double pitch = 8 * sx_, ahead = end_point.x > begin.x ? 1 : -1;
+    add_own_wales(yarn_float, way, loops);
+    // what is in the other wall of a tube is passed already
+    std::erase_if(loops, [&](const PassedLoop& held) {
+      return !piece_.layout.in_one_wall(held.loop, yarn_float.from) ||
+             !piece_.layout.in_one_wall(held.loop, yarn_float.to);
+    });
+    const double pitch = 8 * sx_, ahead = way.ahead();
     const double margin = 0.3 * pitch;
     std::stable_sort(loops.begin(), loops.end(), [&](const PassedLoop& a, const PassedLoop& b) {
       return ahead * a.slot < ahead * b.slot;
@@ -139,38 +165,44 @@ class SinkerPlacer {
       std::size_t next = k;
       double front_bound = std::numeric_limits<double>::infinity(), back_bound = -front_bound;
       double y_sum = 0, x_sum = 0;
+      Pass pass;
+      pass.turn = piece_.layout.turn(loops[k].loop);
+      const Vec3 begin = pass.turn.transposed(way.begin), end = pass.turn.transposed(way.end);
       while (next < loops.size() && std::abs(loops[next].slot - loops[k].slot) < 0.3) {
         const PassedLoop& held = loops[next++];
         const double x = held.slot * piece_.layout.slot_pitch;
-        const double line =
-            begin.y + (end_point.y - begin.y) * std::clamp((x - begin.x) / (end_point.x - begin.x), 0.0, 1.0);
+        const double gone =
+            std::clamp((x - way.flat_begin.x) / (way.flat_end.x - way.flat_begin.x), 0.0, 1.0);
+        const Vec3 line = begin + (end - begin) * gone;
         const double share = events_.share_of_float(held.loop, yarn, gap);
-        const double y = lies_flat(held.loop) ? line : height_on(held.loop, line, share);
+        const bool flat = lies_flat(held.loop);
+        const double y = flat ? line.y : height_on(held.loop, pass.turn, line.y, share);
         y_sum += y;
-        x_sum += leg_centre(held, y);
+        // a loop that lies flat is passed at its needle
+        x_sum += !flat ? leg_centre(held.loop, pass.turn, y) : piece_.layout.is_flat() ? x : line.x;
         double low = std::numeric_limits<double>::infinity(), high = -low;
-        z_range(held.loop, y, low, high);
-        if (low > high) low = high = piece_.layout.lower[held.loop.position()].z;
+        z_range(held.loop, pass.turn, y, low, high);
+        if (low > high) low = high = pass.turn.transposed(piece_.layout.lower[held.loop.position()]).z;
         if (is_front(held.bed)) front_bound = std::min(front_bound, low - float_gap * r_);
         if (!is_front(held.bed)) back_bound = std::max(back_bound, high + float_gap * r_);
       }
       const double count = static_cast<double>(next - k);
       k = next;
-      Pass pass;
-      pass.x = x_sum / count;
-      pass.y = y_sum / count;
       const bool fronts = std::isfinite(front_bound), backs = std::isfinite(back_bound);
-      pass.z = fronts && backs ? (front_bound + back_bound) / 2 : fronts ? front_bound : back_bound;
-      if (ahead * (pass.x - begin.x) > margin && ahead * (end_point.x - pass.x) > margin)
+      pass.place = {x_sum / count, y_sum / count,
+                    fronts && backs ? (front_bound + back_bound) / 2
+                    : fronts        ? front_bound
+                                    : back_bound};
+      if (ahead * (pass.place.x - begin.x) > margin && ahead * (end.x - pass.place.x) > margin)
         passes.push_back(pass);
     }
     return passes;
   }
 
   // A float that leaves or enters on the far side also passes the wale of its own loop.
-  void add_own_wales(const Float& yarn_float, const Vec3& begin, const Vec3& end_point,
-                     std::vector<PassedLoop>& loops) const {
-    const double low = std::min(begin.x, end_point.x), high = std::max(begin.x, end_point.x);
+  void add_own_wales(const Float& yarn_float, const Way& way, std::vector<PassedLoop>& loops) const {
+    const double low = std::min(way.flat_begin.x, way.flat_end.x),
+                 high = std::max(way.flat_begin.x, way.flat_end.x);
     const auto add = [&](LoopId id, LoopId of, Bed bed) {
       const Loop& own = graph_.loop(of);
       const double x = own.slot * piece_.layout.slot_pitch;
@@ -197,25 +229,25 @@ class SinkerPlacer {
 
   // Between the feet and the head of the held loop, in the share of that room that the order of events leaves
   // it.
-  double height_on(LoopId held, double line, double share) const {
+  double height_on(LoopId held, const Rotation& turn, double line, double share) const {
+    const Layout& layout = piece_.layout;
     const std::size_t i = held.position();
     const double count = static_cast<double>(std::max<std::size_t>(events_.of_loop[i].size(), 1));
-    double low = piece_.layout.lower[i].y + 3.6 * sy_ * piece_.layout.y_scale_lower[i];
-    double high = piece_.layout.upper[i].y - 4 * sy_ * piece_.layout.y_scale_upper[i];
+    double low = turn.transposed(layout.lower[i]).y + 3.6 * sy_ * layout.y_scale_lower[i];
+    double high = turn.transposed(layout.upper[i]).y - 4 * sy_ * layout.y_scale_upper[i];
     if (low > high) low = high = (low + high) / 2;
     const double centre = low + (high - low) * share, reach = 0.3 * (high - low) / count;
     return std::clamp(line, centre - reach, centre + reach);
   }
 
   bool lies_flat(LoopId id) const {
-    const Vec3 step = piece_.layout.upper[id.position()] - piece_.layout.lower[id.position()];
+    const Vec3 step = piece_.layout.step(id);
     return step.y < 0.3 * std::abs(step.x);
   }
-  // Where a held loop's legs are at height y; a loop that lies flat is passed at the needle.
-  double leg_centre(const PassedLoop& held, double y) const {
-    const Vec3& low = piece_.layout.lower[held.loop.position()];
-    const Vec3& high = piece_.layout.upper[held.loop.position()];
-    if (lies_flat(held.loop)) return held.slot * piece_.layout.slot_pitch;
+  // Where a held loop's legs are at height y.
+  double leg_centre(LoopId held, const Rotation& turn, double y) const {
+    const Vec3 low = turn.transposed(piece_.layout.lower[held.position()]);
+    const Vec3 high = turn.transposed(piece_.layout.upper[held.position()]);
     const double share = high.y > low.y ? std::clamp((y - low.y) / (high.y - low.y), 0.0, 1.0) : 0.5;
     return low.x + (high.x - low.x) * share;
   }
@@ -246,6 +278,7 @@ class SinkerPlacer {
   const YarnGraph& graph_;
   const GeometryOptions& options_;
   const std::vector<LoopSigns>& signs_;
+  const Layout& flat_;
   const PlacedPiece& piece_;
   HeldEvents events_;
   std::vector<std::vector<LoopId>> stacks_;
@@ -255,8 +288,8 @@ class SinkerPlacer {
 }  // namespace
 
 void place_sinkers(const YarnGraph& graph, const GeometryOptions& options,
-                   const std::vector<LoopSigns>& signs, PlacedPiece& piece) {
-  const SinkerPlacer placer(graph, options, signs, piece);
+                   const std::vector<LoopSigns>& signs, const Layout& flat, PlacedPiece& piece) {
+  const SinkerPlacer placer(graph, options, signs, flat, piece);
   std::vector<std::vector<PlacedSinker>> sinkers(graph.yarns.size());
   for (std::size_t y = 0; y < graph.yarns.size(); ++y) {
     const GraphYarn& yarn = graph.yarns[y];

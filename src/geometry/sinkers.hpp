@@ -7,8 +7,9 @@
 
 namespace loopwright {
 
-// Fills piece.sinkers from the loops already placed.
+// Fills piece.sinkers from the loops already placed. `flat`: where they lie before anything is moved, which
+// says what a float passes.
 void place_sinkers(const YarnGraph& graph, const GeometryOptions& options,
-                   const std::vector<LoopSigns>& signs, PlacedPiece& piece);
+                   const std::vector<LoopSigns>& signs, const Layout& flat, PlacedPiece& piece);
 
 }  // namespace loopwright

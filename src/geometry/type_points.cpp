@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "geometry/assemble.hpp"
 #include "geometry/loop_signs.hpp"
@@ -47,33 +48,38 @@ class LoopPlacer {
   // O or P plus an offset in r.
   Vec3 at_lower(LoopId id, double x, double y, double z) const {
     const std::size_t i = id.position();
-    return layout_.lower[i] +
-           Vec3{x * sx_ * layout_.x_scale_lower[i], y * sy_ * layout_.y_scale_lower[i], z * r_};
+    return layout_.lower[i] + layout_.lower_turn(id) * Vec3{x * sx_ * layout_.x_scale_lower[i],
+                                                            y * sy_ * layout_.y_scale_lower[i], z * r_};
   }
   Vec3 at_upper(LoopId id, double x, double y, double z) const {
     const std::size_t i = id.position();
-    return layout_.upper[i] +
-           Vec3{x * sx_ * layout_.x_scale_upper[i], y * sy_ * layout_.y_scale_upper[i], z * r_};
+    return layout_.upper[i] + layout_.upper_turn(id) * Vec3{x * sx_ * layout_.x_scale_upper[i],
+                                                            y * sy_ * layout_.y_scale_upper[i], z * r_};
+  }
+  // O and P as the loop itself sees them.
+  struct Ends {
+    Rotation turn;
+    Vec3 low, high;
+    Vec3 step() const { return high - low; }
+    Vec3 in_space(const Vec3& own) const { return turn * own; }
+  };
+  Ends ends(LoopId id) const {
+    const Rotation turn = layout_.turn(id);
+    return {turn, turn.transposed(layout_.lower[id.position()]),
+            turn.transposed(layout_.upper[id.position()])};
   }
   // A place on a leg between O and P: `across` from their line, at right angles to it, so that leaning loops
   // keep their legs apart.
-  Vec3 on_leg(LoopId id, double share, double across, double z) const {
-    const std::size_t i = id.position();
-    const Vec3& low = layout_.lower[i];
-    const Vec3& high = layout_.upper[i];
-    Vec3 along{high.x - low.x, high.y - low.y, 0};
+  Vec3 on_leg(const Ends& loop, double share, double across) const {
+    Vec3 along{loop.step().x, loop.step().y, 0};
     along = norm(along) > 1e-9 ? normalized(along) : Vec3{0, 1, 0};
     const Vec3 outward{along.y, -along.x, 0};
-    return low + (high - low) * share + outward * (across * sx_) + Vec3{0, 0, z * r_};
+    return loop.low + loop.step() * share + outward * (across * sx_);
   }
-  double leaning(LoopId id) const {  // in wales, to the right
-    const std::size_t i = id.position();
-    return (layout_.upper[i].x - layout_.lower[i].x) / (8 * sx_);
-  }
-  double steepness(LoopId id) const {  // 1 upright, 0 on its side
-    const std::size_t i = id.position();
-    const double x = layout_.upper[i].x - layout_.lower[i].x, y = layout_.upper[i].y - layout_.lower[i].y;
-    return std::max(y, 0.0) / std::max(std::hypot(x, y), 1e-9);
+  double leaning(const Ends& loop) const { return loop.step().x / (8 * sx_); }  // in wales, to the right
+  static double steepness(const Ends& loop) {                                   // 1 upright, 0 on its side
+    const Vec3 step = loop.step();
+    return std::max(step.y, 0.0) / std::max(std::hypot(step.x, step.y), 1e-9);
   }
 
   void half(LoopId id, double side, std::vector<TypePoint>& points) const {
@@ -82,6 +88,7 @@ class LoopPlacer {
       return;
     }
     const LoopSigns& sign = signs_[id.position()];
+    const Ends own = ends(id);
     const double s = sign.s, c = sign.c, spread = sign.foot_spread;
     const double foot = sign.foot_layer, head = sign.head_layer;
     // Legs that cross others keep clear of them over most of their length; near the binding points only in
@@ -93,7 +100,7 @@ class LoopPlacer {
     points.push_back(
         point(id, LoopPart::leg,
               at_lower(id, side * (1.444 + spread), 1.556, sign.lower_leg + low_share * sign.leg_offset)));
-    if (std::abs(leaning(id)) > 0.4 && steepness(id) < 0.3) {
+    if (std::abs(leaning(own)) > 0.4 && steepness(own) < 0.3) {
       flat_legs(id, side, points);
       return;
     }
@@ -101,17 +108,17 @@ class LoopPlacer {
     // children find it (c, at P).
     const auto leg = [&](double share, double across, double rise, double more) {
       const double layer = std::abs(foot) > 0 ? foot + (head - foot) * rise : head;
-      Vec3 place = on_leg(id, share, side * across, 0);
-      place.z = layout_.lower[id.position()].z * (1 - rise) + layout_.upper[id.position()].z * rise +
+      Vec3 place = on_leg(own, share, side * across);
+      place.z = own.low.z * (1 - rise) + own.high.z * rise +
                 (1.5 * (s * (1 - rise) + c * rise) + layer + sign.leg_offset + more) * r_;
-      points.push_back(point(id, LoopPart::leg, place));
+      points.push_back(point(id, LoopPart::leg, own.in_space(place)));
     };
     // A head that was moved or that lies in a stack meets its children's sinkers and the other legs of the
     // stack from the middle of the leg on; there it must be on its children's side already.
-    const double lean = leaning(id);
+    const double lean = leaning(own);
     if (std::abs(lean) > 0.4) {
       const bool lower = side * lean > 0;
-      const double steep = steepness(id);
+      const double steep = steepness(own);
       // Loops that lean side by side are the nearer to each other the more they lean, and so are their legs;
       // the one above lies over the one below near its feet and under it near its head.
       const double width = std::max(steep, 1 - 2 * steep);
@@ -130,8 +137,7 @@ class LoopPlacer {
       if (!over_head) leg(0.5, 2 * width, 1, 0);
       leg(0.7, (lower ? near_end : far_end) * width, 1, -shingle);
     } else if (graph_.loop(id).head_count > 1) {
-      const std::size_t i = id.position();
-      const bool room = layout_.upper[i].y - layout_.lower[i].y > 5.5 * sy_;
+      const bool room = own.high.y - own.low.y > 5.5 * sy_;
       if (room) leg(0.35, 1.8, 0.2, 0);
       leg(0.55, 2.1, room ? 1 : 0.7, 0);
     } else {
@@ -147,12 +153,13 @@ class LoopPlacer {
   void flat_legs(LoopId id, double side, std::vector<TypePoint>& points) const {
     const LoopSigns& sign = signs_[id.position()];
     const std::size_t i = id.position();
-    const double lean = leaning(id), ahead = lean > 0 ? 1 : -1, length = 8 * std::abs(lean);
+    const Ends own = ends(id);
+    const double lean = leaning(own), ahead = lean > 0 ? 1 : -1, length = 8 * std::abs(lean);
     const double out = sign.lower_leg + 1.3 * sign.s, in = sign.head_layer + sign.c;
     const auto leg = [&](double along, double y, double z) {
       const double share = along / length;
-      const Vec3 base = layout_.lower[i] + (layout_.upper[i] - layout_.lower[i]) * share;
-      points.push_back(point(id, LoopPart::leg, base + Vec3{0, y * sy_, z * r_}));
+      const Vec3 base = own.low + own.step() * share;
+      points.push_back(point(id, LoopPart::leg, own.in_space(base + Vec3{0, y * sy_, z * r_})));
     };
     const double wide = sign.head_spread, low = layout_.x_scale_lower[i], high = layout_.x_scale_upper[i];
     if (side * lean > 0) {
@@ -196,14 +203,15 @@ class LoopPlacer {
   void tuck_half(LoopId id, double side, std::vector<TypePoint>& points) const {
     const LoopSigns& sign = signs_[id.position()];
     const double c = sign.c, s = sign.s, head = sign.head_layer;
-    Vec3 foot = at_lower(id, side * 3.4, -1.5, -1.2 * s);
-    const Vec3 upper_leg = at_upper(id, side * 3.3, -1.556, head + 0.7 * c);
+    const Rotation turn = layout_.turn(id);
+    Vec3 foot = turn.transposed(at_lower(id, side * 3.4, -1.5, -1.2 * s));
+    const Vec3 upper_leg = turn.transposed(at_upper(id, side * 3.3, -1.556, head + 0.7 * c));
     foot.y = std::min(foot.y, upper_leg.y - 2 * sy_);
     Vec3 leg = foot + (upper_leg - foot) * 0.45;
     leg.z = (foot.z + upper_leg.z) / 2 - 0.3 * s * r_;
-    points.push_back(point(id, LoopPart::foot, foot));
-    points.push_back(point(id, LoopPart::leg, leg));
-    points.push_back(point(id, LoopPart::leg, upper_leg));
+    points.push_back(point(id, LoopPart::foot, turn * foot));
+    points.push_back(point(id, LoopPart::leg, turn * leg));
+    points.push_back(point(id, LoopPart::leg, turn * upper_leg));
     points.push_back(point(id, LoopPart::leg, at_upper(id, side * 3.3, 0, head)));
     points.push_back(point(id, LoopPart::head, at_upper(id, side * 1.6, 1.7, head - crossing_reach * c)));
   }
@@ -217,13 +225,19 @@ class LoopPlacer {
 }  // namespace
 
 PlacedPiece place_type_points(const YarnGraph& graph, const GeometryOptions& options) {
+  const Layout flat = lay_out(graph, options);
+  return place_type_points(graph, options, flat, flat);
+}
+
+PlacedPiece place_type_points(const YarnGraph& graph, const GeometryOptions& options, const Layout& flat,
+                              Layout moved) {
   PlacedPiece piece;
-  piece.layout = lay_out(graph, options);
-  const std::vector<LoopSigns> signs = loop_signs(graph, piece.layout, options.shape_radius());
+  piece.layout = std::move(moved);
+  const std::vector<LoopSigns> signs = loop_signs(graph, flat, options.shape_radius());
   const LoopPlacer placer(graph, options, piece.layout, signs);
   piece.loops.reserve(graph.loops.size());
   for (std::size_t i = 0; i < graph.loops.size(); ++i) piece.loops.push_back(placer.place(LoopId(i)));
-  place_sinkers(graph, options, signs, piece);
+  place_sinkers(graph, options, signs, flat, piece);
   return piece;
 }
 
@@ -235,6 +249,12 @@ double rest_length_of(const Loop& loop, const PlacedSinker& before, const Placed
 
 YarnCurves build_yarn_curves(const YarnGraph& graph, const GeometryOptions& options) {
   const PlacedPiece piece = place_type_points(graph, options);
+  return assemble_runs(graph, options, piece, whole_yarns(graph));
+}
+
+YarnCurves build_yarn_curves(const YarnGraph& graph, const GeometryOptions& options, const Layout& flat,
+                             Layout moved) {
+  const PlacedPiece piece = place_type_points(graph, options, flat, std::move(moved));
   return assemble_runs(graph, options, piece, whole_yarns(graph));
 }
 

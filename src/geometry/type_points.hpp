@@ -37,9 +37,15 @@ struct PlacedPiece {
 };
 
 PlacedPiece place_type_points(const YarnGraph& graph, const GeometryOptions& options);
+// The same with binding points elsewhere in space (moved_layout). What the order of yarns at a crossing
+// depends on is read from the flat layout; places and directions are those of `moved`.
+PlacedPiece place_type_points(const YarnGraph& graph, const GeometryOptions& options, const Layout& flat,
+                              Layout moved);
 
 // The whole piece as curves. Held: yarn ends and the heads left on needles.
 YarnCurves build_yarn_curves(const YarnGraph& graph, const GeometryOptions& options);
+YarnCurves build_yarn_curves(const YarnGraph& graph, const GeometryOptions& options, const Layout& flat,
+                             Layout moved);
 
 // Rest length of a loop from the middle of the sinker before it to that of the one after it, in d.
 double rest_length_of(const Loop& loop, const PlacedSinker& before, const PlacedSinker& after,

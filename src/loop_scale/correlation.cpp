@@ -130,13 +130,16 @@ CorrelationMap::CorrelationMap(const YarnGraph& graph, const BindingPoints& poin
   }
 }
 
-std::vector<Rotation> CorrelationMap::frames(std::span<const Vec3> places) const {
+std::vector<Rotation> CorrelationMap::frames(std::span<const Vec3> places,
+                                             std::vector<std::uint8_t>* known) const {
   std::vector<Rotation> turned(stencils_.size());
+  if (known != nullptr) known->assign(stencils_.size(), 0);
   for (std::size_t k = 0; k < stencils_.size(); ++k) {
     const Stencil& s = stencils_[k];
     const std::optional<Rotation> now =
         frame_of(places[at(s.right)] - places[at(s.left)], places[at(s.above)] - places[at(s.below)]);
     if (!now) continue;
+    if (known != nullptr) (*known)[k] = 1;
     const Rotation& old = start_frame_[k];
     turned[k].x = *now * old.transposed({1, 0, 0});
     turned[k].y = *now * old.transposed({0, 1, 0});

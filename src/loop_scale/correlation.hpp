@@ -13,18 +13,12 @@
 #include <span>
 #include <vector>
 
+#include "base/rotation.hpp"
 #include "base/vec3.hpp"
 #include "geometry/yarn_curves.hpp"
 #include "topology/binding_points.hpp"
 
 namespace loopwright {
-
-// Orthonormal; columns are the images of the x, y and z axis.
-struct Rotation {
-  Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
-  Vec3 operator*(const Vec3& v) const { return x * v.x + y * v.y + z * v.z; }
-  Vec3 transposed(const Vec3& v) const { return {dot(x, v), dot(y, v), dot(z, v)}; }
-};
 
 class CorrelationMap {
  public:
@@ -37,8 +31,9 @@ class CorrelationMap {
   std::size_t masses() const { return masses_; }
 
   // One rotation a loop: from its frame at the start to its frame now. A loop whose neighbours lie in a line
-  // or at one place keeps its attitude.
-  std::vector<Rotation> frames(std::span<const Vec3> places) const;
+  // or at one place keeps its attitude; `known`, if wanted, is 0 for it and 1 for all others.
+  std::vector<Rotation> frames(std::span<const Vec3> places,
+                               std::vector<std::uint8_t>* known = nullptr) const;
   // q for given frames; `q` gets rows() points.
   void map(std::span<const Vec3> places, std::span<const Rotation> frames, std::vector<Vec3>& q) const;
   // A b alone, and its transpose: forces on points to forces on masses.

@@ -11,6 +11,7 @@
 #include "geometry/layout.hpp"
 #include "geometry/type_points.hpp"
 #include "loop_scale/settle.hpp"
+#include "loop_scale/tube_walls.hpp"
 
 namespace loopwright {
 namespace {
@@ -28,11 +29,13 @@ std::vector<Vec3> places_of(const BindingPoints& points, const Layout& layout) {
 class NetBuilder {
  public:
   NetBuilder(const YarnGraph& graph, const LoopModelOptions& options, const LoopYarn& yarn,
-             const BindingPoints& points, const std::vector<Vec3>& start)
+             const BindingPoints& points, const std::vector<Vec3>& start,
+             const std::vector<std::int8_t>& walls)
       : graph_(graph),
         options_(options),
         points_(points),
         start_(start),
+        walls_(walls),
         table_(measured_connections()),
         length_(yarn.loop_length),
         stiffness_(stiffness_unit(yarn)),
@@ -68,21 +71,66 @@ class NetBuilder {
     return !loop.children.empty() && graph_.loop(loop.children.front()).side != loop.side;
   }
 
+  // By loop: how many wales its head was moved against those of its neighbours. Where a whole stretch of
+  // needles was moved together (decreases far from the edge) the cloth there was moved and no loop leans; a
+  // loop that crosses another (cable) leans as far as it was moved.
+  std::vector<double> leans_in_course() const {
+    constexpr std::ptrdiff_t reach = 5;  // neighbours on each side
+    std::vector<double> leans(graph_.loops.size(), 0);
+    std::vector<bool> crosses(graph_.loops.size(), false);
+    for (const LegCrossing& crossing : graph_.leg_crossings)
+      crosses[crossing.front.position()] = crosses[crossing.back.position()] = true;
+    const auto moved = [&](LoopId id) {
+      return (graph_.loop(id).head_slot - graph_.loop(id).slot) / slots_per_wale_;
+    };
+    std::vector<double> near;
+    for (const GraphYarn& yarn : graph_.yarns)
+      for (std::size_t k = 0; k < yarn.loops.size(); ++k) {
+        const LoopId id = yarn.loops[k];
+        double& lean = leans[id.position()];
+        lean = moved(id);
+        if (std::abs(lean) <= 0.4 || crosses[id.position()]) continue;
+        near.clear();
+        for (const std::ptrdiff_t step : {-1, 1})
+          for (std::ptrdiff_t i = 1; i <= reach; ++i) {
+            const std::ptrdiff_t other = static_cast<std::ptrdiff_t>(k) + i * step;
+            if (other < 0 || other >= static_cast<std::ptrdiff_t>(yarn.loops.size())) break;
+            const LoopId neighbour = yarn.loops[static_cast<std::size_t>(other)];
+            if (graph_.loop(neighbour).direction != graph_.loop(id).direction) break;
+            near.push_back(moved(neighbour));
+          }
+        if (near.empty()) continue;
+        const auto middle = near.begin() + static_cast<std::ptrdiff_t>(near.size() / 2);
+        std::nth_element(near.begin(), middle, near.end());
+        lean -= *middle;
+      }
+    return leans;
+  }
+
   void add_warps() {
     // Held loops draw yarn as they are passed; tucks are lower: as in geometry's layout.
     const HeldEvents events = held_events(graph_);
     warp_of_.assign(graph_.loops.size(), none);
+    const std::vector<double> leans = leans_in_course();
     std::set<std::pair<std::int32_t, std::int32_t>> known;
     for (std::size_t k = 0; k < graph_.loops.size(); ++k) {
       const std::int32_t a = points_.lower[k], b = points_.upper[k];
       if (a == b) continue;
       const Loop& loop = graph_.loops[k];
       const Connection& connection = odd_warp(k) ? table_.warp_odd : table_.warp_even;
-      double high = 1 + std::min(2.5, 0.45 * static_cast<double>(events.of_loop[k].size()));
+      // what the other wall of a tube does meanwhile needs no room
+      const auto own = [&](const HeldEvent& event) {
+        if (event.tuck.valid()) return walls_[k] * walls_[event.tuck.position()] >= 0;
+        const Float& passing = graph_.yarns[at(event.yarn)].floats[at(event.gap)];
+        return walls_[k] * walls_[passing.to.position()] >= 0;
+      };
+      const double count =
+          static_cast<double>(std::count_if(events.of_loop[k].begin(), events.of_loop[k].end(), own));
+      double high = 1 + std::min(2.5, 0.45 * count);
       if (loop.kind == LoopKind::tuck) high = 0.6;
       Vec3 rest = rest_of(connection, a, b, 0, high);
       // a head that was moved to another wale: the yarn goes over there
-      const double lean = (loop.head_slot - loop.slot) / slots_per_wale_;
+      const double lean = leans[k];
       if (std::abs(lean) > 0.4) rest.x = lean * table_.weft_even.rest.x * length_;
       warp_of_[k] = static_cast<std::int32_t>(net_.springs.size());
       if (!known.insert({a, b}).second) {
@@ -109,9 +157,11 @@ class NetBuilder {
         const double step = (second.slot - first.slot) / slots_per_wale_;
         const double wales = std::max(std::abs(step), 1.0);
         const bool turns = first.direction != second.direction;
-        // Where the yarn turns (round the edge of a tube, at the end of a short row) the face stays the same
-        // seen from outside.
-        const bool odd = !turns && first.side != second.side && wales < 1.5;
+        // Round the edge of a tube the face is the same, seen from outside, where it differs from front to
+        // rear.
+        const bool over = walls_[from.position()] * walls_[to.position()] < 0;
+        const bool odd =
+            over ? first.side == second.side : !turns && first.side != second.side && wales < 1.5;
         const Connection& connection = odd ? table_.weft_odd : table_.weft_even;
         Vec3 rest = rest_of(connection, a, b, step < 0 ? -wales : wales, 0);
         if (turns && std::abs(step) < 0.5) {
@@ -195,6 +245,7 @@ class NetBuilder {
   const LoopModelOptions& options_;
   const BindingPoints& points_;
   const std::vector<Vec3>& start_;
+  const std::vector<std::int8_t>& walls_;
   ConnectionTable table_;
   double length_, stiffness_, slots_per_wale_;
   MassSpringNet net_;
@@ -337,7 +388,8 @@ LoopModel build_loop_model(const YarnGraph& graph, const Program& program, const
   YarnCurves curves = build_yarn_curves(graph, geometry);
   CorrelationMap map(graph, points, start, curves);
   const LoopYarn yarn = loop_yarn(program, geometry);
-  MassSpringNet net = NetBuilder(graph, options, yarn, points, start).build();
+  const std::vector<std::int8_t> walls = tube_walls(graph, rounds_of(graph, points));
+  MassSpringNet net = NetBuilder(graph, options, yarn, points, start, walls).build();
   // (8): the fabric's mass is shared by the binding points
   const double whole = loop_mass(yarn) * static_cast<double>(graph.loops.size());
   net.mass.assign(points.points.size(), whole / static_cast<double>(points.points.size()));
@@ -346,6 +398,7 @@ LoopModel build_loop_model(const YarnGraph& graph, const Program& program, const
   for (const Loop& loop : graph.loops) side.push_back(loop.side);
   LoopModel model{geometry,          yarn,           std::move(points), std::move(net), std::move(start),
                   std::move(curves), std::move(map), std::move(side)};
+  model.wall = walls_of_points(model.points, walls);
   add_loads(graph, options, model);
   return model;
 }

@@ -54,7 +54,8 @@ struct LoopModel {
   std::vector<Vec3> start;  // by binding point, in d
   YarnCurves curves;        // at the start
   CorrelationMap map;
-  std::vector<StitchSide> side;  // by loop
+  std::vector<StitchSide> side;     // by loop
+  std::vector<std::int8_t> wall{};  // by binding point: 1 and -1 in the front and rear wall of a tube, else 0
 };
 
 // Throws std::invalid_argument for a graph without loops and for options out of range.

@@ -3,79 +3,181 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
+
+#include "geometry/layout.hpp"
+#include "geometry/type_points.hpp"
+#include "loop_scale/metric_start.hpp"
+#include "loop_scale/tube_walls.hpp"
 
 namespace loopwright {
 namespace {
 
 std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
-// Loops first .. last of a yarn, neighbours in a course, all in one direction.
-struct Run {
-  std::size_t yarn = 0, first = 0, last = 0;
-};
-
-std::vector<Run> runs_of(const YarnGraph& graph, const BindingPoints& points) {
-  std::vector<Run> runs;
-  for (std::size_t y = 0; y < graph.yarns.size(); ++y) {
-    const std::vector<LoopId>& loops = graph.yarns[y].loops;
-    for (std::size_t first = 0; first < loops.size();) {
-      std::size_t last = first;
-      while (last + 1 < loops.size() && joined_by_weft(points, loops[last], loops[last + 1]) &&
-             graph.loop(loops[last]).direction == graph.loop(loops[last + 1]).direction)
-        ++last;
-      runs.push_back({y, first, last});
-      first = last + 1;
-    }
-  }
-  return runs;
-}
-
-// Runs in turn on the front and on the back bed, with the yarn going over as a weft spring: rounds of a tube.
-struct Round {
-  Run one, other;
-};
-
-std::vector<Round> rounds_of(const YarnGraph& graph, const BindingPoints& points) {
-  std::vector<Round> rounds;
-  const std::vector<Run> runs = runs_of(graph, points);
-  for (std::size_t k = 0; k + 1 < runs.size(); ++k) {
-    const Run &one = runs[k], &other = runs[k + 1];
-    if (one.yarn != other.yarn || one.last == one.first || other.last == other.first) continue;
-    const std::vector<LoopId>& loops = graph.yarns[one.yarn].loops;
-    const auto bed = [&](const Run& run) { return graph.loop(loops[run.first]).side; };
-    const auto one_bed = [&](const Run& run) {
-      for (std::size_t i = run.first; i <= run.last; ++i)
-        if (graph.loop(loops[i]).side != bed(run)) return false;
-      return true;
-    };
-    if (bed(one) == bed(other) || !one_bed(one) || !one_bed(other)) continue;
-    if (graph.loop(loops[one.first]).direction == graph.loop(loops[other.first]).direction) continue;
-    if (!joined_by_weft(points, loops[one.last], loops[other.first])) continue;
-    rounds.push_back({one, other});
-    ++k;
-  }
-  return rounds;
-}
-
-// A flat tube laid round a cylinder of its width: what lies on the front bed in front, the rest behind. Where
-// less than half the piece is knitted in rounds it is no tube and stays as it is.
+// A flat tube laid round a cylinder of its width: the front wall in front, the rest behind. Where less than
+// half the piece is knitted in rounds it is no tube: empty.
 std::vector<Vec3> round_start(const YarnGraph& graph, const LoopModel& model) {
   std::size_t in_rounds = 0;
   for (const Round& round : rounds_of(graph, model.points))
-    for (const Run& run : {round.one, round.other}) in_rounds += run.last - run.first + 1;
-  if (2 * in_rounds < graph.loops.size()) return model.start;
+    in_rounds += round.one.size() + round.other.size();
+  if (2 * in_rounds < graph.loops.size()) return {};
   double left = model.start[0].x, right = left;
   for (const Vec3& p : model.start) left = std::min(left, p.x), right = std::max(right, p.x);
   const double wide = right - left + model.geometry.wale_pitch, radius = wide / std::numbers::pi;
+  std::vector<int> wall;  // what is in neither by its bed
+  for (std::size_t i = 0; i < model.wall.size(); ++i)
+    wall.push_back(model.wall[i] != 0 ? model.wall[i] : is_front(model.points.points[i].bed) ? 1 : -1);
   std::vector<Vec3> places = model.start;
   for (std::size_t i = 0; i < places.size(); ++i) {
     const double share = (places[i].x - left + model.geometry.wale_pitch / 2) / wide;
     const double angle = std::numbers::pi * (1 - share);
-    const bool front = is_front(model.points.points[i].bed);
     places[i].x = (left + right) / 2 + radius * std::cos(angle);
-    places[i].z = (front ? radius : -radius) * std::sin(angle);
+    places[i].z = wall[i] * radius * std::sin(angle);
   }
   return places;
+}
+
+// At the edges of a flat tube the map sees neighbours on one side only; in space the course goes on in the
+// other wall.
+void turn_edges(const YarnGraph& graph, const LoopModel& model, const std::vector<Vec3>& places,
+                std::vector<Rotation>& turns) {
+  const auto lower = [&](LoopId id) { return at(model.points.lower[id.position()]); };
+  for (std::size_t k = 0; k < graph.loops.size(); ++k) {
+    const Loop& loop = graph.loops[k];
+    const std::vector<LoopId>& yarn = graph.yarns[loop.yarn.position()].loops;
+    const std::size_t order = static_cast<std::size_t>(loop.order);
+    if (order == 0 || order + 1 >= yarn.size() || loop.parents.empty()) continue;
+    const std::size_t before = lower(yarn[order - 1]), after = lower(yarn[order + 1]), own = lower(LoopId(k));
+    const bool over = model.wall[own] * model.wall[before] < 0 || model.wall[own] * model.wall[after] < 0;
+    if (!over) continue;
+    Vec3 course = places[after] - places[before];
+    if (loop.direction == Direction::left) course = -course;
+    const Vec3 wale = places[at(model.points.upper[k])] - places[lower(loop.parents.front())];
+    turns[k] = mean_rotation({course, wale, {}}, turns[k]);
+  }
+}
+
+// How the cloth is turned at every binding point, from that of the loops that have their feet there, else
+// those that have their heads there. Loops that do not know it take it from those they are drawn through or
+// that are drawn through them, else from their neighbours in the yarn.
+std::vector<Rotation> turns_of(const YarnGraph& graph, const LoopModel& model,
+                               const std::vector<Vec3>& places) {
+  std::vector<std::uint8_t> known;
+  std::vector<Rotation> turns = model.map.frames(places, &known);
+  turn_edges(graph, model, places, turns);
+  const auto add = [](Rotation& sum, const Rotation& turn) {
+    sum.x += turn.x, sum.y += turn.y, sum.z += turn.z;
+  };
+  const Rotation nothing{{}, {}, {}};
+  for (bool going_on = true; going_on;) {
+    going_on = false;
+    std::vector<std::size_t> found;
+    for (std::size_t k = 0; k < graph.loops.size(); ++k) {
+      if (known[k] != 0) continue;
+      Rotation sum = nothing;
+      int count = 0;
+      const auto take = [&](LoopId id) {
+        if (known[id.position()] == 0) return;
+        add(sum, turns[id.position()]);
+        ++count;
+      };
+      const Loop& loop = graph.loops[k];
+      for (const std::vector<LoopId>* list : {&loop.parents, &loop.children})
+        for (const LoopId id : *list) take(id);
+      const std::vector<LoopId>& yarn = graph.yarns[loop.yarn.position()].loops;
+      for (const int other : {loop.order - 1, loop.order + 1})
+        if (count == 0 && other >= 0 && other < static_cast<int>(yarn.size()) &&
+            graph.loop(yarn[static_cast<std::size_t>(other)]).direction == loop.direction)
+          take(yarn[static_cast<std::size_t>(other)]);
+      if (count == 0) continue;
+      turns[k] = mean_rotation(sum, turns[k]);
+      found.push_back(k);
+    }
+    for (const std::size_t k : found) known[k] = 1, going_on = true;
+  }
+  std::vector<Rotation> at_points;
+  for (const BindingPoint& point : model.points.points) {
+    const std::vector<LoopId>& loops = point.lower_of.empty() ? point.upper_of : point.lower_of;
+    Rotation sum = nothing;
+    for (const LoopId id : loops) add(sum, turns[id.position()]);
+    at_points.push_back(mean_rotation(sum, turns[loops.front().position()]));
+  }
+  return at_points;
+}
+
+// Whether the flat start tears many loops far from what they are joined to: whole stretches of needles were
+// moved against the rows before, as in decreases all along the rows.
+bool is_torn(const MassSpringNet& net, const std::vector<Vec3>& start) {
+  constexpr double far = 2, few = 0.05;
+  double torn = 0, warps = 0;
+  for (const Spring& spring : net.springs) {
+    if (spring.kind != SpringKind::warp) continue;
+    warps += 1;
+    if (distance(start[at(spring.a)], start[at(spring.b)]) > far * norm(spring.rest)) torn += 1;
+  }
+  return torn > few * warps;
+}
+
+// Such a piece laid out by the lengths of its springs instead of its needles, facing as the flat one does on
+// the whole. Empty where that cannot be.
+std::vector<Vec3> metric_places(const YarnGraph& graph, const LoopModel& model) {
+  std::vector<Vec3> places = metric_start(model.net);
+  if (places.empty()) return places;
+  Rotation whole{{}, {}, {}};
+  for (const Rotation& turn : turns_of(graph, model, places))
+    whole.x += turn.x, whole.y += turn.y, whole.z += turn.z;
+  whole = mean_rotation(whole, {});
+  for (Vec3& place : places) place = whole.transposed(place);
+  return places;
+}
+
+// From a start without folds to one with them: the piece comes to rest as a sheet, whose springs are as long
+// as the folded ones reach along it, then the stitches of the two beds go to their two sides of the sheet.
+// Folded from the start, ribs and purls of a piece that still has far to go fold any way.
+std::vector<Vec3> folded_sheet(const YarnGraph& graph, const LoopModel& model, const std::vector<Vec3>& start,
+                               const SettleOptions& settling) {
+  MassSpringNet sheet = model.net;
+  for (Spring& spring : sheet.springs) {
+    const Vec3 along{spring.rest.x, spring.rest.y, 0};
+    const bool over = model.wall[at(spring.a)] * model.wall[at(spring.b)] < 0;
+    if (!over && norm(along) > 0.1 * norm(spring.rest)) spring.rest = along;
+  }
+  NetState state = state_at_rest(start);
+  NetKernel kernel(sheet);
+  settle(kernel, sheet, state, settling);
+  std::vector<Vec3> places = positions_of(state);
+  const std::vector<Rotation> turns = turns_of(graph, model, places);
+  double depth[3] = {0, 0, 0}, count[3] = {0, 0, 0};  // mean z of a wall
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const std::size_t w = static_cast<std::size_t>(model.wall[i] + 1);
+    depth[w] += model.start[i].z;
+    count[w] += 1;
+  }
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const std::size_t w = static_cast<std::size_t>(model.wall[i] + 1);
+    places[i] += turns[i].z * (model.start[i].z - depth[w] / count[w]);
+  }
+  return places;
+}
+
+// First curves where the masses are: the type value points are placed anew, round binding points that turn as
+// the cloth does, so that every crossing is as the template has it. (The correlation map would carry along
+// what the flat layout had to do to loops that were moved far.)
+YarnCurves placed_curves(const YarnGraph& graph, const LoopModel& model, const std::vector<Vec3>& places) {
+  const std::vector<Rotation> turns = turns_of(graph, model, places);
+  MovedPlaces moved;
+  for (std::size_t k = 0; k < graph.loops.size(); ++k) {
+    const std::size_t low = at(model.points.lower[k]), high = at(model.points.upper[k]);
+    moved.lower.push_back(places[low]);
+    moved.upper.push_back(places[high]);
+    moved.turn_lower.push_back(turns[low]);
+    moved.turn_upper.push_back(turns[high]);
+  }
+  moved.wall = tube_walls(graph, rounds_of(graph, model.points));
+  const Layout flat = lay_out(graph, model.geometry);
+  return build_yarn_curves(graph, model.geometry, flat,
+                           moved_layout(graph, model.geometry, flat, std::move(moved)));
 }
 
 }  // namespace
@@ -98,10 +200,18 @@ RelaxedLayout relaxed_layout(const YarnGraph& graph, const Program& program, con
                              const SettleOptions& settling) {
   RelaxedLayout layout{build_loop_model(graph, program, options), {}, {}, {}};
   LoopModel& model = layout.model;
-  layout.state = state_at_rest(round_start(graph, model));
+  std::vector<Vec3> start = round_start(graph, model);
+  bool is_sheet = !start.empty();
+  if (!is_sheet && is_torn(model.net, model.start)) {
+    start = metric_places(graph, model);
+    is_sheet = !start.empty();
+  }
+  if (is_sheet) start = folded_sheet(graph, model, start, settling);
+  if (start.empty()) start = model.start;
+  layout.state = state_at_rest(start);
   NetKernel kernel(model.net);
   layout.result = settle(kernel, model.net, layout.state, settling);
-  layout.curves = curves_at(model, layout.state);
+  layout.curves = placed_curves(graph, model, positions_of(layout.state));
   // the size where it came to rest, as the first geometry counts it
   const auto reach = [](const std::vector<double>& values) {
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
@@ -149,10 +259,23 @@ std::vector<RoundMeasure> round_measures(const YarnGraph& graph, const RelaxedLa
       measure.perimeter += distance(p, q);
       area += cross(p - ring[0], q - ring[0]) / 2;
     }
+    for (const Vec3& p : ring) measure.centre += p / static_cast<double>(ring.size());
+    measure.area = area;
     measure.roundness = norm(area) * 4 * std::numbers::pi / (measure.perimeter * measure.perimeter);
     measures.push_back(measure);
   }
   return measures;
+}
+
+double enclosed_volume(const std::vector<RoundMeasure>& rounds) {
+  double volume = 0;
+  for (std::size_t k = 0; k + 1 < rounds.size(); ++k) {
+    const Vec3 way = rounds[k + 1].centre - rounds[k].centre;
+    // the next round of the programme may belong to another tube
+    if (norm(way) < rounds[k].perimeter / 2)
+      volume += std::abs(dot((rounds[k].area + rounds[k + 1].area) / 2, way));
+  }
+  return volume;
 }
 
 }  // namespace loopwright

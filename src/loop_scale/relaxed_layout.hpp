@@ -39,7 +39,12 @@ struct RoundMeasure {
   int loops = 0;
   double perimeter = 0;  // in d
   double roundness = 0;  // enclosed area over that of a circle of this perimeter
+  Vec3 centre, area;     // mean place; enclosed area along its normal, d^2
 };
 std::vector<RoundMeasure> round_measures(const YarnGraph& graph, const RelaxedLayout& layout);
+
+// What the rounds of a tube enclose, from each to the next that lies less than half a round's length away, in
+// d^3.
+double enclosed_volume(const std::vector<RoundMeasure>& rounds);
 
 }  // namespace loopwright

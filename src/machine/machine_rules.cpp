@@ -8,6 +8,7 @@
 
 #include "machine/needle_table.hpp"
 #include "machine/racking.hpp"
+#include "notation/scan.hpp"
 
 namespace loopwright {
 namespace {
@@ -41,6 +42,9 @@ class RuleChecker {
   void check_carrier_set(const Instruction& instruction);
   void check_sliders(const Instruction& instruction);
   void check_setting(const Instruction& instruction);
+  void check_stitch_values(const Instruction& instruction);
+  void check_table_number(const Instruction& instruction, const std::string& value, int first, int last,
+                          const std::string& name);
   void check_width();
   void count_mixed_pass(const Instruction& instruction);
 
@@ -63,6 +67,7 @@ class RuleChecker {
   long long pass_order_ = 0;
   std::optional<Op> on_bed_[2];
   int mixed_passes_ = 0;
+  std::set<std::string> told_tables_;  // numbers beyond a table, by the extension's name
   SourceLocation first_mixed_;
 };
 
@@ -104,6 +109,9 @@ void RuleChecker::check(const Instruction& instruction) {
       break;
     case Op::extension:
       check_setting(instruction);
+      break;
+    case Op::stitch:
+      check_stitch_values(instruction);
       break;
     default:
       break;
@@ -198,6 +206,28 @@ void RuleChecker::check_sliders(const Instruction& instruction) {
 }
 
 // Settings are numbers, on the Kniterate a digit or a letter.
+// A Shima keeps leading and stitch values in a table of its own; the converter finds in it, by its place,
+// what `stitch L T` asks for: whole numbers, of these pairs.
+void RuleChecker::check_stitch_values(const Instruction& instruction) {
+  if (!limits_.has_stitch_table) return;
+  const double leading = instruction.value, stitch = instruction.value2;
+  if (leading != std::floor(leading) || stitch != std::floor(stitch))
+    return error(instruction.at, "the values of 'stitch' are whole numbers");
+  const auto is_one_of = [&](std::initializer_list<double> values) {
+    return std::find(values.begin(), values.end(), leading) != values.end();
+  };
+  const bool known = stitch == 10   ? is_one_of({-10, 0, 10})
+                     : stitch == 15 ? is_one_of({5, 10, 15})
+                     : stitch == 20 ? is_one_of({10, 15, 20})
+                     : stitch == 25
+                         ? is_one_of({15, 20, 25})
+                         : std::fmod(stitch, 5) == 0 && stitch >= 30 && stitch <= 65 && leading == 25;
+  if (!known)
+    error(instruction.at, "its stitch table has no entry for 'stitch " + written_number(leading) + " " +
+                              written_number(stitch) +
+                              "'; take one that it has, e.g. 'stitch 25 35', or 'x-stitch-number'");
+}
+
 void RuleChecker::check_setting(const Instruction& instruction) {
   const std::string& text = instruction.text;
   const std::size_t blank = text.find_first_of(" \t");
@@ -205,16 +235,32 @@ void RuleChecker::check_setting(const Instruction& instruction) {
   const std::size_t begin = blank == std::string::npos ? blank : text.find_first_not_of(" \t", blank);
   const std::string value = begin == std::string::npos ? "" : text.substr(begin);
   const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  if (name == "x-speed-number" && limits_.has_stitch_table)
+    check_table_number(instruction, value, 0, 15, name);
   if (name != "x-stitch-number" && name != "x-presser-mode") return;
   if (!limits_.has_hook && name == "x-stitch-number") {
     const bool good = value.size() == 1 && (is_digit(value[0]) || (value[0] >= 'A' && value[0] <= 'Z'));
     if (!good) error(instruction.at, "x-stitch-number is a digit or a capital letter");
   } else if (name == "x-stitch-number") {
-    if (value.empty() || !std::all_of(value.begin(), value.end(), is_digit))
-      error(instruction.at, "x-stitch-number is a whole number");
+    check_table_number(instruction, value, 1, 120, name);
   } else if (limits_.has_hook && value != "on" && value != "off" && value != "auto") {
     error(instruction.at, "x-presser-mode is on, off or auto");
   }
+}
+
+// A whole number; beyond the machine's table it is told, since the converter writes it all the same.
+void RuleChecker::check_table_number(const Instruction& instruction, const std::string& value, int first,
+                                     int last, const std::string& name) {
+  const std::string digits = value.starts_with('+') ? value.substr(1) : value;
+  const bool whole = !digits.empty() &&
+                     std::all_of(digits.begin(), digits.end(), [](char c) { return c >= '0' && c <= '9'; });
+  if (!whole) return error(instruction.at, name + " is a whole number, not '" + value + "'");
+  if (!limits_.has_stitch_table) return;
+  const bool inside = digits.size() < 6 && std::stoi(digits) >= first && std::stoi(digits) <= last;
+  if (inside || !told_tables_.insert(name).second) return;
+  diagnostics_.warning(instruction.at, std::string(limits_.name) + ": " + name +
+                                           " is a place in a table from " + std::to_string(first) + " to " +
+                                           std::to_string(last) + ", not " + digits.substr(0, 20));
 }
 
 void RuleChecker::check_width() {
@@ -262,7 +308,8 @@ MachineLimits limits_of(MachineKind machine) {
           .farthest_racking = 8,
           .yarns_in_a_stitch = 2,
           .has_hook = true,
-          .has_sliders = true};
+          .has_sliders = true,
+          .has_stitch_table = true};
 }
 
 std::optional<MachineKind> machine_named(std::string_view name) {

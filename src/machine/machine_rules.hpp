@@ -21,6 +21,7 @@ struct MachineLimits {
   std::optional<double> farthest_racking;
   int yarns_in_a_stitch = 1;  // plating
   bool has_hook = false, has_sliders = false;
+  bool has_stitch_table = false;  // stitch and speed values are places in tables of the machine
 };
 
 MachineLimits limits_of(MachineKind machine);

@@ -63,7 +63,7 @@ class Compiler {
       program_.repeat_starts.push_back(position());
       if (knitted == plan_.margin_courses) held_at_start = held_in_window();
       for (const CourseLine& line : source_.lines) {
-        if (knitted == total) break;
+        if (knitted == total && !plan_.whole) break;
         const bool at_repeat = position() == program_.repeat_starts.back();
         if (plan_.margin_wales > 0 && (at_repeat || line.knits())) mark_window(knitted, held_at_start);
         knit_line(line);
@@ -208,6 +208,7 @@ class Compiler {
         }
         const Cell& cell = cell_of(*row, w);
         if (cell.letter == 'T' || cell.letter == 't') transfer_needle(cell, w);
+        if (cell.letter == 'D' || cell.letter == 'd') drop_needle(cell, w);
       }
     }
     rack_after(pass);
@@ -227,7 +228,7 @@ class Compiler {
     const bool to_rear = cell.letter == 't';
     const Needle from{to_rear ? Bed::front : Bed::back, wale};
     const Needle to{to_rear ? Bed::back : Bed::front, to_rear ? wale - offset : wale + offset};
-    bool& effective = transfer_cells_[{cell.at.line, cell.at.column}];
+    bool& effective = moving_cells_[{cell.at.line, cell.at.column}];
     if (!in_piece(to.index)) {
       effective = true;  // at the edge of the piece the loop stays where it is
       return;
@@ -238,13 +239,22 @@ class Compiler {
     add_transfer(from, to, cell.at);
   }
 
+  void drop_needle(const Cell& cell, int wale) {
+    int& held = cell.letter == 'd' ? front_held(wale) : rear_held(wale);
+    bool& effective = moving_cells_[{cell.at.line, cell.at.column}];
+    if (held == 0) return;
+    effective = true;
+    add(Op::drop, cell.at).needle = {cell.letter == 'd' ? Bed::front : Bed::back, wale};
+    held = 0;
+  }
+
   // A course on one needle per wale knits a wale's loops where they are wanted: those on the facing needle
   // come over.
   void imply_transfers(const Pass& pass) {
     for (const bool to_rear : {true, false}) {
       for (int w = plan_.first; w < plan_.last; ++w) {
         const Cell& cell = cell_of(pass.cells, w);
-        const bool wants_rear = cell.letter == 'e' || cell.letter == 'n';
+        const bool wants_rear = is_rear_letter(cell.letter);
         if (!forms_loop(cell.letter) || wants_rear != to_rear) continue;
         if ((to_rear ? front_held(w) : rear_held(w)) == 0) continue;
         add_rack(0, cell.at);
@@ -265,7 +275,7 @@ class Compiler {
     for (int w = begin; w < end; ++w) {
       const Cell& cell = cell_of(pass.cells, w);
       if (cell.letter == '-') continue;
-      bool rear = cell.letter == 'e' || cell.letter == 'n';
+      bool rear = is_rear_letter(cell.letter);
       if (!pass.both_beds && cell.letter == '.') rear = rear_held(w) > 0 && front_held(w) == 0;
       actions_.push_back({rear ? w + racking : w, {rear ? Bed::back : Bed::front, w}, &cell});
     }
@@ -347,16 +357,43 @@ class Compiler {
     join(direction, actions_.front());
     for (const Action& action : actions_) {
       const char letter = action.cell->letter;
-      const Op op = letter == '.' ? Op::miss : letter == 'v' || letter == 'n' ? Op::tuck : Op::knit;
+      const std::optional<Needle> target = split_target(action, racking);
+      const Op op = letter == '.'                    ? Op::miss
+                    : letter == 'v' || letter == 'n' ? Op::tuck
+                    : target                         ? Op::split
+                                                     : Op::knit;
       Instruction& instruction = add(op, action.cell->at);
       instruction.direction = direction;
       instruction.needle = action.needle;
       instruction.carriers = carriers;
       int& held =
           is_front(action.needle.bed) ? front_held(action.needle.index) : rear_held(action.needle.index);
-      if (op == Op::knit) held = yarns;
+      if (target) {
+        instruction.target = *target;
+        (target->bed == Bed::front ? front_held(target->index) : rear_held(target->index)) += held;
+      }
+      if (op == Op::knit || op == Op::split) held = yarns;
       if (op == Op::tuck) held += yarns;
     }
+  }
+
+  // Where the old loops of a split go. None for other letters, and at the edge of the piece, where it is a
+  // stitch.
+  std::optional<Needle> split_target(const Action& action, double racking) {
+    if (action.cell->letter != 's' && action.cell->letter != 'S') return std::nullopt;
+    if (racking != std::floor(racking)) {
+      if (!said_split_) {
+        diagnostics_.error(action.cell->at,
+                           "a split needs needles that face each other; write ';;Gating: opposite', or with "
+                           "half-pitch gating a racking of a half before it, e.g. 'R-0.5'");
+      }
+      said_split_ = true;
+      return std::nullopt;
+    }
+    const int offset = static_cast<int>(racking);
+    const bool front = action.needle.bed == Bed::front;
+    const Needle target{front ? Bed::back : Bed::front, action.needle.index + (front ? -offset : offset)};
+    return in_piece(target.index) ? std::optional(target) : std::nullopt;
   }
 
   std::vector<CarrierId> bring_in(const Pass& pass) {
@@ -416,11 +453,12 @@ class Compiler {
   }
 
   void warn_of_idle_notation() {
-    for (const auto& [at, effective] : transfer_cells_) {
+    for (const auto& [at, effective] : moving_cells_) {
       if (effective) continue;
-      diagnostics_.warning({at.first, at.second},
-                           "there is never a loop to transfer here; T takes loops to the front "
-                           "bed, t to the rear bed");
+      diagnostics_.warning(
+          {at.first, at.second},
+          "there is never a loop to move here; t and d take those of the front needle, T and "
+          "D those of the rear needle");
     }
     for (std::size_t i = 0; i < last_direction_.size(); ++i) {
       if (last_direction_[i] != Direction::none) continue;
@@ -443,9 +481,9 @@ class Compiler {
   std::vector<CarrierId> last_carriers_;
   std::vector<CarrierId> joining_;  // brought in, to be plated with a yarn that is in already
   SourceLocation last_at_;
-  std::vector<Action> actions_;                         // of the run being knitted
-  std::map<std::pair<int, int>, bool> transfer_cells_;  // by line and column: whether it ever moved a loop
-  bool said_fractional_ = false;
+  std::vector<Action> actions_;                       // of the run being knitted
+  std::map<std::pair<int, int>, bool> moving_cells_;  // by line and column: whether it ever moved a loop
+  bool said_fractional_ = false, said_split_ = false;
   const Pass* said_collision_ = nullptr;
 };
 
@@ -453,11 +491,19 @@ class Compiler {
 
 Program compile_vermiculation(const Vermiculation& vermiculation, const FabricOptions& options,
                               Diagnostics& diagnostics) {
-  return Compiler(vermiculation, options, diagnostics).program();
+  return compile_vermiculation(std::make_shared<const Vermiculation>(vermiculation), options, diagnostics);
+}
+
+Program compile_vermiculation(std::shared_ptr<const Vermiculation> vermiculation,
+                              const FabricOptions& options, Diagnostics& diagnostics) {
+  Program program = Compiler(*vermiculation, options, diagnostics).program();
+  program.notation = std::move(vermiculation);
+  return program;
 }
 
 Program read_vermiculation(std::string_view text, Diagnostics& diagnostics, const FabricOptions& options) {
-  return compile_vermiculation(parse_vermiculation(text, diagnostics), options, diagnostics);
+  return compile_vermiculation(std::make_shared<const Vermiculation>(parse_vermiculation(text, diagnostics)),
+                               options, diagnostics);
 }
 
 }  // namespace loopwright

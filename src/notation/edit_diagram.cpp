@@ -87,6 +87,10 @@ char letter_of(NeedleOperation operation, Bed bed) {
       return bed == Bed::front ? 'v' : 'n';
     case NeedleOperation::transfer:
       return bed == Bed::front ? 't' : 'T';
+    case NeedleOperation::split:
+      return bed == Bed::front ? 's' : 'S';
+    case NeedleOperation::drop:
+      return bed == Bed::front ? 'd' : 'D';
     case NeedleOperation::missed:
       return '.';
     case NeedleOperation::inactive:
@@ -97,10 +101,7 @@ char letter_of(NeedleOperation operation, Bed bed) {
 }
 
 bool works(char letter) { return letter != '.' && letter != '-'; }
-bool works_on(char letter, Bed bed) {
-  const bool rear = letter == 'e' || letter == 'n' || letter == 'T';
-  return works(letter) && rear == (bed == Bed::back);
-}
+bool works_on(char letter, Bed bed) { return works(letter) && is_rear_letter(letter) == (bed == Bed::back); }
 
 // What is wrong with the place, and for change_operation the pass's row that holds the needle.
 std::string check_place(const Vermiculation& notation, NeedlePlace place) {
@@ -273,7 +274,10 @@ std::string insert_line(Vermiculation& notation, std::size_t line, const CourseL
   if (std::string refusal = refusal_of(course, notation); !refusal.empty()) return refusal;
   line = std::min(line, notation.lines.size());
   if (courses_in(notation.written, 0, notation.written.size()) == notation.lines.size()) {
-    const std::size_t place = place_of(notation.written, line, true);
+    std::size_t place = place_of(notation.written, line, true);
+    // comments on lines of their own go with the course below them
+    while (line > 0 && line < notation.lines.size() && notation.written[place - 1].kind == Kind::text)
+      --place;
     notation.written.insert(notation.written.begin() + static_cast<std::ptrdiff_t>(place),
                             {Kind::course, write_course(course, notation.yarns), 1});
   }

@@ -50,22 +50,33 @@ bool is_knitout_header(std::string_view line) {
 }
 
 bool KnitoutHeaders::read_magic(std::string_view line) {
+  int before = 0;  // bytes of a byte-order mark
   if (line.starts_with("\xef\xbb\xbf")) {
-    report_.warning(1, "the file starts with a byte-order mark; save it as UTF-8 without one");
+    report_.error(
+        1,
+        "the file starts with a byte-order mark, and nothing may stand before ';!knitout-2'; save it "
+        "as UTF-8 without one");
     line.remove_prefix(3);
+    before = 3;
   }
   if (!line.starts_with(magic)) {
-    report_.error(1, "the first line is not ';!knitout-2' but " + quoted(line) +
-                         "; put ';!knitout-2' before everything");
+    report_.error(before + 1, "the first line is not ';!knitout-2' but " + quoted(line) +
+                                  "; put ';!knitout-2' before everything");
     return false;
   }
-  const int column = static_cast<int>(magic.size()) + 1;
+  const int column = before + static_cast<int>(magic.size()) + 1;
   const std::string_view text = trimmed(line.substr(magic.size()));
   const auto version = parsed_version(text);
   if (!version) {
     report_.error(column,
                   "expected a whole number as version, not " + quoted(text) + "; write ';!knitout-2'");
     return true;
+  }
+  // readers compare the whole line
+  if (text.size() != line.size() - magic.size()) {
+    const bool after = line.substr(magic.size()).starts_with(text);
+    report_.error(column + (after ? static_cast<int>(text.size()) : 0),
+                  "a blank in the first line, which is ';!knitout-2' and nothing else; remove it");
   }
   program_.version = *version;
   if (*version > 2) {
@@ -101,7 +112,10 @@ void KnitoutHeaders::read(std::string_view line) {
       read_fabric_header(name.substr(2), value, {report_.line, column}, program_.settings,
                          report_.diagnostics);
   } else if (!name.starts_with("Yarn-") && !is_known_header(name)) {
-    report_.warning(3, "unknown header " + quoted(name) + " is left out; own headers start with 'X-'");
+    const std::string_view meant = word_meant(name, known_headers);
+    report_.warning(
+        3, "unknown header " + quoted(name) + " is left out; " +
+               (meant.empty() ? "own headers start with 'X-'" : "write '" + std::string(meant) + "'"));
   }
 }
 
@@ -159,6 +173,15 @@ void KnitoutHeaders::end() {
 }
 
 void KnitoutHeaders::meet_late(std::string_view line) {
+  // `;;Carriers:1 2`: a comment, since no blank follows the colon
+  const std::size_t colon = line.find(':');
+  if (!said_late_ && line.starts_with(";;") && colon != std::string_view::npos && !is_knitout_header(line) &&
+      is_known_header(line.substr(2, colon - 2))) {
+    said_late_ = true;
+    report_.warning(static_cast<int>(colon) + 2,
+                    "a blank is missing after the colon, so the line counts as a comment; write ';;" +
+                        std::string(line.substr(2, colon - 2)) + ": ...'");
+  }
   if (said_late_ || !is_knitout_header(line)) return;
   const std::string_view name = line.substr(2, line.find(": ") - 2);
   if (!is_known_header(name) && !name.starts_with("Yarn-")) return;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <vector>
 
 #include "notation/knitout_headers.hpp"
 #include "notation/material.hpp"
@@ -69,6 +70,14 @@ NeedleWord needle_word(std::string_view word) {
   return said;
 }
 
+std::string hint_of_needle(std::string_view word) {
+  const std::string small = lower_case(word.substr(0, 20));
+  if (small != word && needle_word(small).index) return "; beds are written small, '" + small + "'";
+  if (small == "f" || small == "b" || small == "fs" || small == "bs")
+    return "; its number follows without a blank, e.g. '" + small + "3'";
+  return {};
+}
+
 }  // namespace
 
 bool KnitoutOperations::read(std::string_view text, Instruction& instruction) {
@@ -80,7 +89,11 @@ bool KnitoutOperations::read(std::string_view text, Instruction& instruction) {
   const auto known = std::find_if(operations.begin(), operations.end(),
                                   [&](const Operation& operation) { return operation.name == name.text; });
   if (known == operations.end()) {
+    std::vector<std::string_view> names;
+    for (const Operation& each : operations) names.push_back(each.name);
+    const std::string_view meant = word_meant(name.text, names);
     report_.error(name.column, "unknown operation " + quoted(name.text) +
+                                   (meant.empty() ? "" : "; write '" + std::string(meant) + "'") +
                                    "; knitout knows knit, tuck, split, miss, drop, amiss, xfer, rack, "
                                    "stitch, pause, in, inhook, releasehook, out, outhook and x-...");
     return false;
@@ -138,8 +151,12 @@ bool KnitoutOperations::read_direction(WordReader& words, Direction& direction) 
     direction = Direction::left;
   } else {
     const bool typographic = word.text == "\xe2\x88\x92" || word.text == "\xe2\x80\x93";
-    report_.error(word.column, "expected a direction, + or -, not " + quoted(word.text) +
-                                   (typographic ? "; this is a typographic minus, type the plain '-'" : ""));
+    report_.error(word.column,
+                  "expected a direction, + or -, not " + quoted(word.text) +
+                      (typographic                    ? "; this is a typographic minus, type the plain '-'"
+                       : needle_word(word.text).index ? "; the direction stands before the needle, e.g. '+ " +
+                                                            std::string(word.text) + "'"
+                                                      : ""));
     return false;
   }
   return true;
@@ -151,13 +168,18 @@ bool KnitoutOperations::read_needle(WordReader& words, Needle& needle) {
   const NeedleWord said = needle_word(word.text);
   if (said.index && *said.index <= largest_needle && *said.index >= -largest_needle) {
     needle = {said.bed, *said.index};
+    const std::size_t plus = word.text.find('+');
+    if (plus != std::string_view::npos)
+      report_.error(word.column + static_cast<int>(plus),
+                    "a needle's number has no '+'; write '" + to_string(needle) + "'");
     return true;
   }
-  report_.error(word.column,
-                said.whole_number
-                    ? "needle " + quoted(word.text) + " is out of range; needles run from -" +
-                          std::to_string(largest_needle) + " to " + std::to_string(largest_needle)
-                    : "expected a needle (f, fs, b or bs and a number, e.g. f3), not " + quoted(word.text));
+  report_.error(word.column, said.whole_number
+                                 ? "needle " + quoted(word.text) + " is out of range; needles run from -" +
+                                       std::to_string(largest_needle) + " to " +
+                                       std::to_string(largest_needle)
+                                 : "expected a needle (f, fs, b or bs and a number, e.g. f3), not " +
+                                       quoted(word.text) + hint_of_needle(word.text));
   return false;
 }
 
@@ -167,7 +189,8 @@ bool KnitoutOperations::read_number(WordReader& words, std::string_view what, do
   const auto number = parsed_number(word.text);
   if (!number) {
     report_.error(word.column,
-                  "expected a " + std::string(what) + " (a number such as -0.25), not " + quoted(word.text));
+                  "expected a " + std::string(what) + " (a number such as -0.25), not " + quoted(word.text) +
+                      (word.text.find(',') != std::string_view::npos ? "; write a point for the comma" : ""));
     return false;
   }
   value = *number;
@@ -204,6 +227,10 @@ bool KnitoutOperations::read_carrier_set(WordReader& words, Instruction& instruc
 // A carrier that no header lists: said at its first use; from then on it counts as listed, so that reading
 // goes on. Not valid if it cannot be a carrier.
 CarrierId KnitoutOperations::carrier_met(const Word& word) {
+  if (word.text.starts_with('#') || word.text.starts_with("//")) {
+    report_.error(word.column, quoted(word.text) + " starts no comment in knitout; write ';'");
+    return {};
+  }
   if (word.text.find(',') != std::string_view::npos) {
     report_.error(word.column,
                   "carrier name " + quoted(word.text) + " holds a comma; separate carriers by blanks");

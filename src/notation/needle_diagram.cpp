@@ -17,17 +17,21 @@ NeedleOperation operation_of(char letter) {
     case 'v':
     case 'n':
       return NeedleOperation::tuck;
+    case 's':
+    case 'S':
+      return NeedleOperation::split;
     case 'T':
     case 't':
       return NeedleOperation::transfer;
+    case 'D':
+    case 'd':
+      return NeedleOperation::drop;
     case '.':
       return NeedleOperation::missed;
     default:
       return NeedleOperation::inactive;
   }
 }
-
-bool is_rear_letter(char letter) { return letter == 'e' || letter == 'n' || letter == 'T'; }
 
 const Cell& cell_of(const std::vector<Cell>& cells, int wale) {
   return cells[static_cast<std::size_t>(wale) % cells.size()];
@@ -156,10 +160,8 @@ class DiagramMaker {
     if (knits) find_feeder(source, pass);
     for (int w = 0; w < ring_; ++w) put_cell(source, pass, w);
     set_rear_slots(source, pass);
-    if (knits)
-      hold_stitches(pass);
-    else
-      move_loops(pass);
+    if (knits) hold_stitches(pass);
+    move_loops(pass);
     diagram_.passes.push_back(std::move(pass));
   }
 
@@ -219,16 +221,20 @@ class DiagramMaker {
     }
   }
 
-  // Front needles give first; an empty needle gives nothing.
+  // Front needles give first; an empty needle gives nothing. A needle that splits holds a loop afterwards.
   void move_loops(const DiagramPass& pass) {
     for (const bool front : {true, false}) {
       for (int w = 0; w < ring_; ++w) {
         const DiagramNeedle& needle = (front ? pass.front : pass.rear)[index(w)];
         std::vector<bool>& from = front ? front_held_ : rear_held_;
-        if (needle.operation != NeedleOperation::transfer || !from[index(w)]) continue;
+        const bool splits = needle.operation == NeedleOperation::split;
+        if (needle.operation == NeedleOperation::drop) from[index(w)] = false;
+        if (needle.operation != NeedleOperation::transfer && !splits) continue;
+        const bool gives = from[index(w)];
+        from[index(w)] = splits;
+        if (!gives) continue;
         const int racking = static_cast<int>(std::lround(pass.rear[index(w)].slot)) - w;
         const int target = ((front ? w - racking : w + racking) % ring_ + ring_) % ring_;
-        from[index(w)] = false;
         (front ? rear_held_ : front_held_)[index(target)] = true;
       }
     }

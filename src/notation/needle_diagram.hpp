@@ -16,9 +16,9 @@ enum class NeedleOperation : std::uint8_t {
   missed,    // `.`, the yarn floats past
   stitch,    // g, e
   tuck,      // v, n
-  transfer,  // T, t: gives its loops to the needle that it faces
-  split,     // knitout alone: a stitch whose old loops go to the facing needle
-  drop       // knitout alone: loops are let fall
+  transfer,  // t, T: gives its loops to the needle that it faces
+  split,     // s, S: a stitch whose old loops go to the facing needle
+  drop       // d, D: loops are let fall
 };
 
 struct DiagramNeedle {

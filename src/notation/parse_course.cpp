@@ -1,6 +1,7 @@
 #include "notation/parse_course.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "notation/scan.hpp"
@@ -8,15 +9,18 @@
 namespace loopwright {
 
 namespace {
-bool is_yarn_letter(char c) { return c == 'g' || c == 'e' || c == 'v' || c == 'n'; }
-bool is_transfer_letter(char c) { return c == 'T' || c == 't'; }
 bool holds(const std::vector<Cell>& cells, bool (*wanted)(char)) {
   return std::any_of(cells.begin(), cells.end(), [&](const Cell& cell) { return wanted(cell.letter); });
 }
+bool is_one_of(char letter, std::string_view letters) { return letters.find(letter) != letters.npos; }
 }  // namespace
 
-bool Pass::knits() const { return holds(cells, is_yarn_letter) || holds(rear, is_yarn_letter); }
-bool Pass::transfers() const { return holds(cells, is_transfer_letter) || holds(rear, is_transfer_letter); }
+bool forms_loop(char letter) { return is_one_of(letter, "gevnsS"); }
+bool moves_loops(char letter) { return is_one_of(letter, "tTdD"); }
+bool is_rear_letter(char letter) { return is_one_of(letter, "enSTD"); }
+
+bool Pass::knits() const { return holds(cells, forms_loop) || holds(rear, forms_loop); }
+bool Pass::transfers() const { return holds(cells, moves_loops) || holds(rear, moves_loops); }
 bool Pass::carries_yarn() const {
   return knits() || ((!yarns.empty() || direction != Direction::none) && !transfers());
 }
@@ -72,6 +76,12 @@ class CourseParser {
 
   CourseLine course_line() {
     CourseLine line;
+    if (const std::string_view word = knitout_word(); !word.empty()) {
+      error(text_.find(word), quoted(word) +
+                                  " is knitout; a fabric file has a letter for each needle, e.g. 'gge'. A "
+                                  "knitout file starts with ';!knitout-2'");
+      return line;
+    }
     while (true) {
       line.passes.push_back(read_pass());
       if (at_ == text_.size()) return line;
@@ -94,16 +104,26 @@ class CourseParser {
     return found == yarns_.end() ? nullptr : &*found;
   }
 
+  // The word that starts the line if it is an operation of knitout.
+  std::string_view knitout_word() const {
+    static constexpr std::array<std::string_view, 14> words{
+        "knit", "tuck", "split",  "miss",        "drop", "amiss",   "xfer",
+        "rack", "in",   "inhook", "releasehook", "out",  "outhook", "pause"};
+    Word first;
+    if (!WordReader(text_).next(first)) return {};
+    return std::find(words.begin(), words.end(), first.text) == words.end() ? std::string_view() : first.text;
+  }
+
   // Up to '&' or the end of the line.
   Pass read_pass() {
     Pass pass;
     skip_blanks();
     pass.at = here(at_);
     const std::size_t begin = at_;
+    const std::size_t errors_before = static_cast<std::size_t>(diagnostics_.errors());
     const std::string_view rest = text_.substr(at_);
     const std::size_t head_end = rest.substr(0, rest.find('&')).find_first_of(":<>");
     if (head_end != std::string_view::npos) read_head(pass, at_ + head_end);
-    const std::size_t errors_before = static_cast<std::size_t>(diagnostics_.errors());
     Row front = read_row();
     Row rear;
     if (at_ < text_.size() && text_[at_] == '/') {
@@ -150,6 +170,8 @@ class CourseParser {
         } else {
           pass.yarns.push_back(place);
         }
+      } else if (!name.empty() && name.find_first_not_of("gevnsStTdDRr.-()*/ ") == name.npos) {
+        error(end, std::string("'") + text_[end] + "' stands before the letters of a pass, not after them");
       } else if (name.empty()) {
         error(std::min(begin, end), "expected the name of a yarn before '+', ':', '<' or '>'");
       } else {
@@ -170,23 +192,23 @@ class CourseParser {
     }
     for (const auto* row : {&pass.cells, &pass.rear}) {
       for (const Cell& cell : *row) {
-        if (!is_transfer_letter(cell.letter)) continue;
+        if (!moves_loops(cell.letter)) continue;
         if (pass.knits()) {
-          diagnostics_.error(cell.at,
-                             "transfers and stitches in one pass; put '&' or a new line between them");
+          diagnostics_.error(
+              cell.at, "transfers or drops and stitches in one pass; put '&' or a new line between them");
           return;
         }
       }
     }
     if (!pass.yarns.empty() || pass.direction != Direction::none) {
       if (pass.transfers())
-        error(begin, "a pass of transfers carries no yarn; remove what stands before the letters");
+        error(begin, "a pass of transfers or drops carries no yarn; remove what stands before the letters");
       if (pass.cells.empty())
         error(begin, "a pass that carries yarn names its needles; write '.' for those that it goes past");
     }
     if (!pass.both_beds) return;
-    check_row(pass.cells, "gvt.-", "left of '/' stand the front needles: g v t . -");
-    check_row(pass.rear, "enT.-", "right of '/' stand the rear needles: e n T . -");
+    check_row(pass.cells, "gvstd.-", "left of '/' stand the front needles: g v s t d . -");
+    check_row(pass.rear, "enSTD.-", "right of '/' stand the rear needles: e n S T D . -");
   }
 
   void check_row(const std::vector<Cell>& cells, std::string_view letters, const std::string& what) {
@@ -227,7 +249,7 @@ class CourseParser {
         ++at_;
         if (row.cells.size() == first_cell)
           error(begin, "an empty group has zero wales; put letters into it");
-      } else if (is_yarn_letter(c) || is_transfer_letter(c) || c == '.' || c == '-') {
+      } else if (forms_loop(c) || moves_loops(c) || c == '.' || c == '-') {
         row.cells.push_back({c, here(begin)});
       } else {
         unknown_letter(begin);
@@ -300,9 +322,20 @@ class CourseParser {
     while (at_ < text_.size() && (static_cast<unsigned char>(text_[at_]) & 0xc0) == 0x80) ++at_;
     const std::string_view letter = text_.substr(index, at_ - index);
     std::string hint =
-        "letters are g e (stitch on the front, rear bed) v n (tuck) T t (transfer) R r (racking) "
-        ". (missed) - (inactive)";
-    if (letter == "k" || letter == "K")
+        "letters are g e (stitch on the front, rear bed) v n (tuck) s S (split) t T (transfer) d D (drop) "
+        "R r (racking) . (missed) - (inactive)";
+    const char small = letter.size() == 1 ? lower_case(letter).front() : ' ';
+    if (letter == "G" || letter == "E" || letter == "V" || letter == "N")
+      hint = std::string("letters of stitches and tucks are small: '") + small + "'";
+    else if (letter == "_")
+      hint = "a missed needle is '.', an inactive one '-'";
+    else if (letter == "," || letter == "|")
+      hint = "letters stand side by side, blanks mean nothing; remove it";
+    else if (is_digit(letter.front()))
+      hint = "repeat a letter or a group by '*n' after it, e.g. 'g*2' or '(ge)*2'";
+    else if (letter == "#")
+      return give_up(index, "unknown letter '#'; a comment starts with ';'");
+    else if (letter == "k" || letter == "K")
       hint = "a stitch on the front bed is 'g'";
     else if (letter == "p" || letter == "P")
       hint = "a stitch on the rear bed is 'e'";

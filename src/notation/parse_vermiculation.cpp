@@ -21,7 +21,7 @@ constexpr std::size_t deepest_bracket = 32;
 class VermiculationParser {
  public:
   VermiculationParser(std::string_view text, Diagnostics& diagnostics)
-      : lines_(text), diagnostics_(diagnostics) {
+      : whole_(text), lines_(text), diagnostics_(diagnostics) {
     result_.file = diagnostics.file();
   }
 
@@ -37,6 +37,7 @@ class VermiculationParser {
       written_ = {};
       read_line();
       written_.text = written_.kind == WrittenLine::Kind::magic ? text_ : line.text;
+      written_.end = end_of(line);
       if (result_.written.size() < most_written_lines) result_.written.push_back(std::move(written_));
     }
     if (line_ == 0)
@@ -54,6 +55,13 @@ class VermiculationParser {
   SourceLocation here(std::size_t index) const { return {line_, static_cast<int>(index) + 1}; }
   void error(std::size_t index, std::string message) { diagnostics_.error(here(index), std::move(message)); }
 
+  // Line feed and carriage returns that follow the line's text.
+  std::string_view end_of(const TextLine& line) const {
+    const auto end = static_cast<std::size_t>(line.text.data() + line.text.size() - whole_.data());
+    const std::size_t feed = whole_.find('\n', end);
+    return whole_.substr(end, feed == std::string_view::npos ? feed : feed + 1 - end);
+  }
+
   void read_line() {
     if (line_ == 1 && read_magic()) {
       written_.kind = WrittenLine::Kind::magic;
@@ -70,11 +78,12 @@ class VermiculationParser {
   bool read_magic() {
     if (text_.starts_with("\xef\xbb\xbf")) {
       diagnostics_.warning(here(0), "the file starts with a byte-order mark; save it as UTF-8 without one");
+      result_.byte_order_mark = true;
       text_.remove_prefix(3);
     }
     if (!text_.starts_with(magic)) {
-      error(0,
-            "the first line is not ';!vermiculation-1' but " + quoted(text_) + "; put it before everything");
+      error(0, "the first line is not ';!vermiculation-1' but " + quoted(text_) +
+                   "; put ';!vermiculation-1' before everything");
       return false;
     }
     const auto version = parsed_integer(trimmed(text_.substr(magic.size())));
@@ -93,16 +102,21 @@ class VermiculationParser {
   bool read_header() {
     std::size_t end = 2;
     while (end < text_.size() && (is_letter(text_[end]) || is_digit(text_[end]) || text_[end] == '-')) ++end;
-    if (end == 2 || end == text_.size() || text_[end] != ':') return false;
     const std::string_view name = text_.substr(2, end - 2);
+    if (end == 2 || end == text_.size() || text_[end] != ':') {
+      if (!headers_ended_ && is_known(name))
+        diagnostics_.warning(here(end), "there is no ':' after " + quoted(name) +
+                                            ", so the line counts as a comment; write ';;" +
+                                            std::string(name) + ": ...'");
+      return false;
+    }
     std::size_t begin = end + 1;
     while (begin < text_.size() && is_blank(text_[begin])) ++begin;
     const std::string_view rest = text_.substr(begin);
     const std::string_view value = trimmed(rest.substr(0, rest.find(';')));
     const bool is_yarn = name.starts_with("Yarn-");
-    const bool is_own = is_yarn || name == "Carriers" || name == "Gating";
     if (headers_ended_) {
-      if (is_own || is_fabric_header(name)) {
+      if (is_known(name)) {
         diagnostics_.warning(here(2),
                              "header " + quoted(name) + " after the first course has no effect; move it up");
       }
@@ -114,7 +128,7 @@ class VermiculationParser {
                            "header " + quoted(name) + " is given a second time; the last one counts");
     }
     if (result_.headers.size() < 1000) result_.headers.emplace_back(name, value);
-    if (value.empty() && !is_yarn && (is_own || is_fabric_header(name))) {
+    if (value.empty() && !is_yarn && is_known(name)) {
       error(begin, "header " + quoted(name) + " has no value; write one after the colon or remove the line");
     } else if (is_fabric_header(name)) {
       read_fabric_header(name, value, here(begin), result_.settings, diagnostics_);
@@ -130,10 +144,19 @@ class VermiculationParser {
       else
         error(begin, "gating is opposite or half-pitch, not " + quoted(value));
     } else if (!name.starts_with("X-")) {
-      diagnostics_.warning(here(2),
-                           "unknown header " + quoted(name) + " has no effect; own headers start with 'X-'");
+      std::vector<std::string_view> known(fabric_headers().begin(), fabric_headers().end());
+      known.insert(known.end(), {"Carriers", "Gating"});
+      const std::string_view meant =
+          lower_case(name).starts_with("yarn-") ? "Yarn-" : word_meant(name, known);
+      diagnostics_.warning(here(2), "unknown header " + quoted(name) + " has no effect; " +
+                                        (meant.empty() ? "own headers start with 'X-'"
+                                                       : "write '" + std::string(meant) + "'"));
     }
     return true;
+  }
+
+  static bool is_known(std::string_view name) {
+    return name.starts_with("Yarn-") || name == "Carriers" || name == "Gating" || is_fabric_header(name);
   }
 
   void read_yarn_header(std::string_view name, std::string_view value, std::size_t value_index) {
@@ -182,10 +205,10 @@ class VermiculationParser {
     headers_ended_ = true;
     if (result_.yarns.empty()) result_.yarns.push_back({"A", {}, {}});
     if (!result_.carriers.empty() && result_.carriers.size() < result_.yarns.size()) {
-      diagnostics_.error(carriers_at_,
-                         "there are " + std::to_string(result_.yarns.size()) + " yarns and only " +
-                             std::to_string(result_.carriers.size()) +
-                             " carriers; name one carrier for each yarn, in the order of the yarns");
+      diagnostics_.error(carriers_at_, "there are " + std::to_string(result_.yarns.size()) +
+                                           " yarns and only " + std::to_string(result_.carriers.size()) +
+                                           (result_.carriers.size() == 1 ? " carrier" : " carriers") +
+                                           "; name one carrier for each yarn, in the order of the yarns");
     }
   }
 
@@ -194,7 +217,10 @@ class VermiculationParser {
     const std::size_t begin = text_.find_first_not_of(" \t");
     if (text_[begin] == '[') {
       if (trimmed(text_).size() > 1)
-        error(begin + 1, "'[' stands on a line of its own; put the course on the next");
+        return error(
+            begin + 1,
+            "'[' stands on a line of its own, the courses that it repeats on the next; needles of one "
+            "course are repeated by '( )*n'");
       if (open_brackets_.size() == deepest_bracket) return error(begin, "brackets are nested too deep");
       open_brackets_.push_back({here(begin), result_.lines.size(), letters_});
       written_.kind = WrittenLine::Kind::open;
@@ -250,6 +276,7 @@ class VermiculationParser {
     std::size_t first_line = 0, letters = 0;
   };
 
+  std::string_view whole_;
   LineReader lines_;
   Diagnostics& diagnostics_;
   Vermiculation result_;

@@ -70,6 +70,8 @@ bool find_size(const Vermiculation& source, const FabricSettings& settings, Piec
   if (plan.edges == Edges::held || plan.edges == Edges::periodic) {
     plan.margin_wales = rounded_up(std::max(smallest_margin, farthest_racking(source)), plan.repeat_wales);
     plan.margin_courses = rounded_up(smallest_margin, plan.repeat_courses);
+  } else {
+    plan.whole = settings.size_courses == 0;
   }
   plan.first = -plan.margin_wales;
   plan.last = plan.wales + plan.margin_wales;
@@ -105,8 +107,6 @@ Gating gating_of(const Vermiculation& source) {
 }
 
 }  // namespace
-
-bool forms_loop(char letter) { return letter == 'g' || letter == 'e' || letter == 'v' || letter == 'n'; }
 
 std::optional<PiecePlan> plan_piece(const Vermiculation& source, const FabricOptions& options,
                                     FabricSettings& settings, Diagnostics& diagnostics) {

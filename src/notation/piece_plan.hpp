@@ -13,11 +13,10 @@ struct PiecePlan {
   int repeat_wales = 1, repeat_courses = 1;  // of the notation
   int wales = 0, courses = 0;                // wanted
   int margin_wales = 0, margin_courses = 0;  // on each side, whole repeats
-  int first = 0, last = 0;                   // needles of the piece with its margins: [first, last)
+  // A notation that is knitted once, as it stands: what follows its last course is done as well.
+  bool whole = false;
+  int first = 0, last = 0;  // needles of the piece with its margins: [first, last)
 };
-
-/// Whether a letter takes yarn: g e v n.
-bool forms_loop(char letter);
 
 /// Fills edges, size and repeat of `settings` as well. Nothing if there is no piece: `diagnostics` says why,
 /// or holds errors already.

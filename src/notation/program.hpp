@@ -1,6 +1,7 @@
 // Program: what both notations (fabric file and knitout) compile to, and all that the machine needs to know.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -93,6 +94,8 @@ struct ProgramWindow {
   int first_instruction = 0, instructions = 0;  // loops formed by instructions in [first, first + count)
 };
 
+struct Vermiculation;  // notation/vermiculation.hpp
+
 struct Program {
   std::string file;  // name for messages
   int version = 2;
@@ -105,6 +108,9 @@ struct Program {
       source_marks;                // (instruction, text of its knitout `;!source:` comment)
   ProgramWindow window;            // of a fabric file with held or periodic edges
   std::vector<int> repeat_starts;  // instruction at which each course-wise repeat of a fabric file starts
+  // The fabric file that it was knitted from, as it is written: write_vermiculation gives that text back,
+  // comments and layout with it, wherever it still says what the instructions do. None: knitout, or made.
+  std::shared_ptr<const Vermiculation> notation;
 };
 
 }  // namespace loopwright

@@ -14,6 +14,11 @@ class PassFinder {
   std::vector<ProgramPass> runs() {
     for (std::size_t i = 0; i < program_.instructions.size(); ++i) {
       const Instruction& each = program_.instructions[i];
+      // a repeat of a fabric file starts anew
+      for (;
+           repeat_ < program_.repeat_starts.size() && program_.repeat_starts[repeat_] <= static_cast<int>(i);
+           ++repeat_)
+        open_ = false;
       if (each.op == Op::rack) racking_ = each.value;
       if (each.op == Op::pause) open_ = false;
       if (each.op < Op::knit) continue;
@@ -57,6 +62,7 @@ class PassFinder {
   const Program& program_;
   std::vector<ProgramPass> runs_;
   double racking_ = 0;
+  std::size_t repeat_ = 0;
   bool open_ = false;
   const Instruction* last_ = nullptr;
   std::set<Needle> used_;                       // by a run of transfers

@@ -119,6 +119,31 @@ std::optional<int> parsed_integer(std::string_view text) {
   return value;
 }
 
+namespace {
+// Whether one letter that is wrong, left out, put in or swapped with the next makes the one of the other.
+bool differ_by_a_slip(std::string_view a, std::string_view b) {
+  if (a.size() > b.size()) std::swap(a, b);
+  if (b.size() - a.size() > 1) return false;
+  std::size_t same = 0;
+  while (same < a.size() && a[same] == b[same]) ++same;
+  if (a.size() < b.size()) return a.substr(same) == b.substr(same + 1);
+  if (same == a.size()) return false;
+  const bool swapped = same + 1 < a.size() && a[same] == b[same + 1] && a[same + 1] == b[same] &&
+                       a.substr(same + 2) == b.substr(same + 2);
+  return swapped || a.substr(same + 1) == b.substr(same + 1);
+}
+}  // namespace
+
+std::string_view word_meant(std::string_view word, std::span<const std::string_view> known) {
+  if (word.size() > 40) return {};
+  const std::string small = lower_case(word);
+  for (const std::string_view each : known)
+    if (small == lower_case(each)) return each;
+  for (const std::string_view each : known)
+    if (each.size() > 2 && differ_by_a_slip(small, lower_case(each))) return each;
+  return {};
+}
+
 std::string written_number(double value) {
   std::array<char, 32> digits{};
   return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};

@@ -1,6 +1,7 @@
 // Small tools that both readers share: lines, words with their columns, numbers, quantities with units.
 #pragma once
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -62,6 +63,10 @@ std::optional<int> parsed_integer(std::string_view text);
 
 /// The shortest digits that read back as the same number.
 std::string written_number(double value);
+
+/// The word of `known` that `word` was meant for, told by its letters' case or by one letter that is wrong,
+/// left out, put in or swapped with the next; empty if there is none.
+std::string_view word_meant(std::string_view word, std::span<const std::string_view> known);
 
 /// Text as it may stand in a message: control and non-ASCII bytes as \xNN.
 std::string printable(std::string_view text);

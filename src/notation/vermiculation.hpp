@@ -14,13 +14,20 @@ namespace loopwright {
 
 inline constexpr std::size_t most_letters = 5'000'000;  // of a whole notation, repeats written out
 
-/// One letter of a course. g e: stitch on the front, rear bed; v n: tuck on the front, rear bed; T t:
-/// transfer to the front, rear bed; '.': missed needle, the yarn floats past; '-': inactive needle, nothing
-/// is done.
+/// One letter of a course. g e: stitch on the front, rear bed; v n: tuck on the front, rear bed; s S: split
+/// on the front, rear needle, a stitch whose old loops go to the facing needle; t T: transfer from the front,
+/// rear needle; d D: the front, rear needle drops its loops; '.': missed needle, the yarn floats past; '-':
+/// inactive needle, nothing is done.
 struct Cell {
   char letter = '-';
   SourceLocation at;
 };
+
+/// Whether a letter takes yarn: g e v n s S. Whether it moves loops without yarn: t T d D. Whether it stands
+/// for a needle of the rear bed: e n S T D.
+bool forms_loop(char letter);
+bool moves_loops(char letter);
+bool is_rear_letter(char letter);
 
 /// A racking `Rk` or `rk` written before the cell `before`: 0 leads the pass, cells.size() trails it.
 struct RackMark {
@@ -29,7 +36,7 @@ struct RackMark {
   SourceLocation at;
 };
 
-/// What the carriage does in one traverse: yarn letters, or transfers, or nothing but racking.
+/// What the carriage does in one traverse: yarn letters, or transfers and drops, or nothing but racking.
 struct Pass {
   std::vector<int> yarns;                 // places in Vermiculation::yarns, leading yarn first
   Direction direction = Direction::none;  // none: back from where the carrier is
@@ -39,7 +46,7 @@ struct Pass {
   std::vector<RackMark> racks;
   SourceLocation at;
   bool knits() const;      // holds a yarn letter
-  bool transfers() const;  // holds T or t
+  bool transfers() const;  // holds a letter that moves loops without yarn
   bool carries_yarn()
       const;  // knits, or has its feeder or direction named: the carrier goes past its needles
 };
@@ -64,11 +71,14 @@ struct WrittenLine {
   Kind kind = Kind::text;  // text: blank or a comment; open, close: `[` and `]*n`
   std::string text;        // with its comment, without its line end
   std::size_t times = 1;   // close: n
+  std::string end =
+      "\n";  // line feed, after carriage returns if there were any; empty at the end of the file
 };
 
 struct Vermiculation {
   std::string file;
   int version = 1;
+  bool byte_order_mark = false;  // before the magic line
   FabricSettings settings;
   std::vector<VermiculationYarn> yarns;
   std::vector<std::string> carriers;  // machine carriers of the yarns; empty: named as the yarns
@@ -89,7 +99,9 @@ struct FabricOptions {
 Vermiculation parse_vermiculation(std::string_view text, Diagnostics& diagnostics);
 
 /// Knits the notation to its size: the Program with window and repeat starts. If `diagnostics` already holds
-/// errors the Program has settings and yarns, but no instructions.
+/// errors the Program has settings and yarns, but no instructions. The Program keeps the notation.
+Program compile_vermiculation(std::shared_ptr<const Vermiculation> vermiculation,
+                              const FabricOptions& options, Diagnostics& diagnostics);
 Program compile_vermiculation(const Vermiculation& vermiculation, const FabricOptions& options,
                               Diagnostics& diagnostics);
 

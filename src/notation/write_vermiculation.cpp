@@ -120,6 +120,9 @@ class Writer {
   explicit Writer(const Vermiculation& notation) : notation_(notation) {}
 
   std::string text() {
+    if (notation_.byte_order_mark) text_ = "\xef\xbb\xbf";
+    if (!notation_.written.empty() && !notation_.written.front().end.empty())
+      line_end_ = notation_.written.front().end;
     find_blocks();
     find_headers();
     write_headers();
@@ -134,19 +137,24 @@ class Writer {
   }
 
  private:
-  void put(std::string_view line) {
+  // A new line ends as the file's first line does.
+  void put(std::string_view line) { put(line, line_end_); }
+  void put(std::string_view line, const std::string& end) {
+    const std::size_t begin = notation_.byte_order_mark ? 3 : 0;
+    if (text_.size() > begin && text_.back() != '\n') text_ += line_end_;  // the file's last line, once
     text_ += line;
-    text_ += '\n';
+    text_ += end;
   }
 
   // A blank or commented line. A header that came too late to count does not come in time because the courses
   // before it are gone: it stays a comment.
-  void put_text(const std::string& line) {
+  void put_text(const WrittenLine& written) {
+    const std::string& line = written.text;
     std::size_t end = 2;
     while (end < line.size() && (is_letter(line[end]) || is_digit(line[end]) || line[end] == '-')) ++end;
     const bool late_header =
         !begun_ && line.starts_with(";;") && end > 2 && end < line.size() && line[end] == ':';
-    put(late_header ? "; " + line : line);
+    put(late_header ? "; " + line : line, written.end);
   }
 
   // Where each bracket closes, and where the headers end.
@@ -191,22 +199,23 @@ class Writer {
     for (std::size_t i = 0; i < end; ++i) write_header_line(i, said);
     for (const std::string& name : canonical_names()) {
       if (std::find(said.begin(), said.end(), name) == said.end() && must_be_said(name))
-        put_header(name, value_of(name), "");
+        put_header(name, value_of(name), "", line_end_);
     }
-    for (std::size_t i = end; i < first_course_; ++i) put_text(written[i].text);
+    for (std::size_t i = end; i < first_course_; ++i) put_text(written[i]);
   }
 
   void write_header_line(std::size_t index, std::vector<std::string>& said) {
     const WrittenLine& line = notation_.written[index];
     if (line.kind == Kind::magic) {
       const auto version = parsed_integer(trimmed(std::string_view(line.text).substr(16)));
-      return put(version == notation_.version ? line.text
-                                              : ";!vermiculation-" + std::to_string(notation_.version));
+      return put(
+          version == notation_.version ? line.text : ";!vermiculation-" + std::to_string(notation_.version),
+          line.end);
     }
-    if (line.kind == Kind::text) return put_text(line.text);
+    if (line.kind == Kind::text) return put_text(line);
     const std::string name = name_of_header(line.text);
     // of a header that is given twice the last one counts
-    if (last_of_name_.at(name) != index) return put(line.text);
+    if (last_of_name_.at(name) != index) return put(line.text, line.end);
     const std::size_t comment = std::min(line.text.find(';', 2), line.text.size());
     const std::string_view value =
         trimmed(std::string_view(line.text).substr(name.size() + 3, comment - name.size() - 3));
@@ -214,17 +223,18 @@ class Writer {
     // yarns whose order has changed are all written anew
     if (!exists(name) || (name.starts_with("Yarn-") && !yarns_in_order_)) return;
     said.push_back(name);
-    if (same_value(name, value, wanted)) return put(line.text);
-    put_header(name, wanted, line.text.substr(comment));
+    if (same_value(name, value, wanted)) return put(line.text, line.end);
+    put_header(name, wanted, line.text.substr(comment), line.end);
   }
 
   static std::string name_of_header(const std::string& text) { return text.substr(2, text.find(':') - 2); }
 
-  void put_header(const std::string& name, const std::string& value, const std::string& comment) {
+  void put_header(const std::string& name, const std::string& value, const std::string& comment,
+                  const std::string& end) {
     std::string line = ";;" + name + ':';
     if (!value.empty()) line += ' ' + one_line(value);
     if (!comment.empty()) line += "  " + comment;
-    put(line);
+    put(line, end);
   }
 
   const VermiculationYarn* yarn_of(const std::string& header) const {
@@ -329,13 +339,13 @@ class Writer {
     for (std::size_t i = begin; i < end; ++i) {
       const WrittenLine& written = notation_.written[i];
       if (written.kind == Kind::course) {
-        put_course(written.text, line(at++));
+        put_course(written, line(at++));
         begun_ = true;
       } else if (written.kind == Kind::open && close_[i] > 0) {
         at = write_block(i, at, comments);
         i = close_[i];
       } else if (comments) {
-        put_text(written.text);
+        put_text(written);
       }
     }
     return at;
@@ -352,10 +362,10 @@ class Writer {
       if (next - copy == 1 && close.times > 1) {
         write_items(open + 1, close_[open], at, first);
       } else {
-        put(first ? notation_.written[open].text : "[");
+        put(first ? notation_.written[open].text : "[", notation_.written[open].end);
         begun_ = true;
         write_items(open + 1, close_[open], at, first);
-        put(next - copy == close.times ? close.text : "]*" + std::to_string(next - copy));
+        put(next - copy == close.times ? close.text : "]*" + std::to_string(next - copy), close.end);
       }
       at += (next - copy) * length;
       copy = next;
@@ -369,22 +379,23 @@ class Writer {
     return true;
   }
 
-  void put_course(const std::string& written, const CourseLine& wanted) {
+  void put_course(const WrittenLine& line, const CourseLine& wanted) {
+    const std::string& written = line.text;
     const std::size_t comment = std::min(written.find(';'), written.size());
     Diagnostics diagnostics;
     const CourseLine read =
         parse_course(std::string_view(written).substr(0, comment), 1, notation_.yarns, diagnostics);
-    if (diagnostics.ok() && same_course(read, wanted)) return put(written);
+    if (diagnostics.ok() && same_course(read, wanted)) return put(written, line.end);
     std::string text = write_course(wanted, notation_.yarns);
     if (comment < written.size()) {
       text.resize(std::max(text.size() + 1, comment), ' ');
       text += written.substr(comment);
     }
-    put(text);
+    put(text, line.end);
   }
 
   const Vermiculation& notation_;
-  std::string text_;
+  std::string text_, line_end_ = "\n";
   std::vector<std::size_t> close_;  // of each `[` in notation_.written, its `]`; 0 elsewhere
   std::map<std::string, std::size_t> last_of_name_;
   bool yarns_in_order_ = true;

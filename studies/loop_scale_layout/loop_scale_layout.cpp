@@ -69,8 +69,11 @@ void study(const char* file) {
   least = 1e9, most = 0;
   for (const RoundMeasure& r : rounds)
     least = std::min(least, r.roundness), most = std::max(most, r.roundness);
-  std::printf("  %zu rounds, the middle one of %d loops; enclosed area over a circle's %.2f to %.2f\n",
-              rounds.size(), rounds[rounds.size() / 2].loops, least, most);
+  std::printf(
+      "  %zu rounds, the middle one of %d loops; enclosed area over a circle's %.2f to %.2f; "
+      "%.0f cm^3 enclosed\n",
+      rounds.size(), rounds[rounds.size() / 2].loops, least, most,
+      enclosed_volume(rounds) * mm * mm * mm * 1e-3);
 }
 
 }  // namespace

@@ -154,6 +154,13 @@ TEST(CarrierPlaces, are_kept_when_a_carrier_goes_out) {
   EXPECT_FALSE(run.record.carriers[2].needle);
 }
 
+TEST(CarrierPlaces, are_not_moved_by_transfers_after_the_carrier_went_out) {
+  const MachineRun run = machine_of("in A\nknit + f3 A\nxfer f3 b3\nout A\nrack 1\nxfer b3 f4\nrack 0\n");
+  ASSERT_TRUE(run.diagnostics.ok()) << run.diagnostics;
+  EXPECT_EQ(run.record.carriers[0].needle, back(3));
+  EXPECT_EQ(run.record.loops[0].last().needle, front(4));
+}
+
 TEST(CarrierPlaces, tell_who_is_still_in) {
   const MachineRun run = machine_of("in A\nknit + b3 A\nrack 2\n");
   EXPECT_EQ(run.record.carriers[0].needle, back(3));

@@ -92,6 +92,11 @@ const Breach breaches[] = {
      "takes 541 needles, the bed has 540"},
     {"stitch_setting_of_a_shima", shima, "x-stitch-number A\n", 3, "a whole number"},
     {"stitch_setting_of_a_kniterate", kniterate, "x-stitch-number 12\n", 3, "a digit or a capital letter"},
+    {"stitch_values_beyond_the_table", shima, "stitch 5 10\n", 3, "no entry for 'stitch 5 10'"},
+    {"stitch_values_the_wrong_way_round", shima, "stitch 35 25\n", 3, "no entry for 'stitch 35 25'"},
+    {"stitch_values_with_a_fraction", shima, "stitch 25 35.5\n", 3, "whole numbers"},
+    {"speed_of_a_shima", shima, "x-speed-number fast\n", 3, "a whole number, not 'fast'"},
+    {"speed_below_nothing", shima, "x-speed-number -1\n", 3, "a whole number, not '-1'"},
     {"presser", shima, "x-presser-mode maybe\n", 3, "on, off or auto"},
 };
 
@@ -102,13 +107,26 @@ TEST(MachineRules, what_the_machines_can_do) {
   EXPECT_TRUE(checked(shima_head +
                           "inhook 2 1\nknit - f1 2 1\nreleasehook 2 1\nrack 8.25\nrack 0\n"
                           "split + f1 bs1 1\nsplit + f2 bs2 1\nrack 1\nxfer bs1 f2\nxfer bs2 f3\nrack 0\n"
-                          "outhook 2 1\nx-stitch-number 30\nx-presser-mode auto\n",
+                          "outhook 2 1\nx-stitch-number 30\nx-presser-mode auto\nx-speed-number 15\n"
+                          "stitch -10 10\nstitch 10 15\nstitch 20 25\nstitch 25 65\nstitch 20 20\n",
                       shima)
                   .ok());
   EXPECT_TRUE(checked(kniterate_head + "in 1\nrack -0.5\nknit + f1 1\nknit + b1 1\nrack 0.25\nout 1\n"
                                        "x-stitch-number A\n",
                       kniterate)
                   .ok());
+}
+
+TEST(MachineRules, places_beyond_a_table_are_told_once) {
+  const Diagnostics said = checked(
+      shima_head + "x-speed-number 300\nx-speed-number 16\nx-stitch-number 0\nx-stitch-number 121\n", shima);
+  EXPECT_TRUE(said.ok()) << said;
+  EXPECT_TRUE(says(said, Severity::warning, 3, "x-speed-number is a place in a table from 0 to 15, not 300"))
+      << said;
+  EXPECT_TRUE(says(said, Severity::warning, 5, "x-stitch-number is a place in a table from 1 to 120, not 0"))
+      << said;
+  EXPECT_EQ(said.warnings(), 2) << said;
+  EXPECT_EQ(checked(kniterate_head + "x-speed-number 300\n", kniterate).warnings(), 0);
 }
 
 TEST(MachineRules, a_kniterate_takes_a_pass_for_knits_and_one_for_tucks) {

@@ -175,14 +175,29 @@ TEST(DiagramChanges, OnOneNeedleForEachWaleTheOtherBedTakesOver) {
   EXPECT_EQ(write_vermiculation(notation), ";!vermiculation-1\ngv / .e\n");
 }
 
+TEST(DiagramChanges, SplitsAndDropsAreLetters) {
+  Vermiculation notation = body("gg\n..\n");
+  EXPECT_EQ(change_operation(notation, {0, 0, Bed::back, 1}, NeedleOperation::split), "");
+  EXPECT_EQ(change_operation(notation, {0, 0, Bed::front, 0}, NeedleOperation::split), "");
+  EXPECT_EQ(change_operation(notation, {1, 0, Bed::front, 0}, NeedleOperation::drop), "");
+  EXPECT_EQ(change_operation(notation, {1, 0, Bed::back, 1}, NeedleOperation::drop), "");
+  EXPECT_EQ(write_vermiculation(notation), ";!vermiculation-1\nsS\ndD\n");
+  const NeedleDiagram diagram = needle_diagram(notation);
+  // in the repeat: after a split both needles hold loops, and those on the wrong bed come over first
+  EXPECT_EQ(diagram.passes.back().front[0].operation, NeedleOperation::drop);
+  EXPECT_EQ(diagram.passes.back().rear[1].operation, NeedleOperation::drop);
+}
+
 TEST(DiagramChanges, WhatTheNotationCannotSayIsRefused) {
   Vermiculation notation = body("gg\nt.\n");
   const std::string before = write_vermiculation(notation);
   EXPECT_THAT(change_operation(notation, {0, 0, Bed::front, 1}, NeedleOperation::transfer),
-              HasSubstr("transfers and stitches in one pass"));
+              HasSubstr("transfers or drops and stitches in one pass"));
   EXPECT_THAT(change_operation(notation, {1, 0, Bed::front, 1}, NeedleOperation::stitch),
-              HasSubstr("transfers and stitches in one pass"));
+              HasSubstr("transfers or drops and stitches in one pass"));
   EXPECT_THAT(change_operation(notation, {0, 0, Bed::front, 1}, NeedleOperation::drop),
+              HasSubstr("transfers or drops and stitches in one pass"));
+  EXPECT_THAT(change_operation(notation, {0, 0, Bed::front, 1}, NeedleOperation::unused),
               HasSubstr("no letter"));
   EXPECT_THAT(change_operation(notation, {0, 0, Bed::front_slider, 1}, NeedleOperation::tuck),
               HasSubstr("sliders"));
@@ -260,7 +275,7 @@ TEST(DiagramChanges, RandomChangesAreReadBack) {
             const Pass& changed = notation.lines[line].passes[pass];
             const auto& row = changed.both_beds && bed == Bed::back ? changed.rear : changed.cells;
             const char letter = row[static_cast<std::size_t>(place.needle) % row.size()].letter;
-            EXPECT_EQ(letter, (bed == Bed::front ? "gvt" : "enT")[static_cast<int>(operation) - 3]);
+            EXPECT_EQ(letter, (bed == Bed::front ? "gvtsd" : "enTSD")[static_cast<int>(operation) - 3]);
           }
       }
       (refusal.empty() ? done : refused) += 1;

@@ -72,10 +72,10 @@ class RandomNotation {
 
   std::string pass() {
     if (chance(10)) return racking();
-    if (chance(20)) return chance(50) ? row("tT.-") : row("t.-") + "/" + row("T.-", false);
+    if (chance(20)) return chance(50) ? row("tTdD.-") : row("td.-") + "/" + row("TD.-", false);
     const bool both = chance(40);
     const std::string head = chance(40) ? yarn() + one_of(":", "<", ">") : one_of("", "<", ">");
-    return head + blanks() + (both ? row("gv.-") + "/" + row("en.-", false) : row("gevn.-"));
+    return head + blanks() + (both ? row("gvs.-") + "/" + row("enS.-", false) : row("gevnsS.-"));
   }
 
   std::string yarn() {

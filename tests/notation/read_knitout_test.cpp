@@ -14,7 +14,7 @@ TEST(ReadKnitout, EveryOperation) {
   Diagnostics diagnostics("all.k");
   const Program program = read_knitout(
       ";!knitout-2\n;;Carriers: 1 2 L3\n;;Gauge: 15\ninhook 1\ntuck - f-3 1\nreleasehook 1\nin 2 L3\n"
-      "knit + f+3 2 L3 ; plated\nsplit - bs7 f7 1;\nmiss + b10000 2\ndrop f1\namiss fs-0\nxfer f1 b2\n"
+      "knit + f3 2 L3 ; plated\nsplit - bs7 f7 1;\nmiss + b10000 2\ndrop f1\namiss fs-0\nxfer f1 b2\n"
       "rack -0.75\nrack +1\nstitch -5 10.5\npause\nx-stitch-number 101\nx-vis-color #ff8800 2\nknit + f1\n"
       "outhook 1\nout 2 L3\n",
       diagnostics);
@@ -44,6 +44,31 @@ TEST(ReadKnitout, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(said_of("in 1\n"), HasSubstr("x.k:1:1: error: the first line is not ';!knitout-2' but 'in 1'"));
   EXPECT_THAT(said_of(";!knitout-2\nin 1\n"), HasSubstr("the Carriers header is missing"));
   EXPECT_THAT(said_of(";!knitout-3\n;;Carriers: 1\n"), HasSubstr("x.k:1:11: warning: version 3 is newer"));
+  EXPECT_THAT(said_of(head + "in 1 # left"),
+              HasSubstr("x.k:3:6: error: '#' starts no comment in knitout; write ';'"));
+  EXPECT_THAT(said_of(head + "Knit + f1 1"),
+              HasSubstr("x.k:3:1: error: unknown operation 'Knit'; write 'knit'"));
+  EXPECT_THAT(said_of(head + "tcuk + f1 1"), HasSubstr("unknown operation 'tcuk'; write 'tuck'"));
+  EXPECT_THAT(said_of(head + "purl + f1 1"), HasSubstr("unknown operation 'purl'; knitout knows"));
+  EXPECT_THAT(said_of(head + "knit f1 1"),
+              HasSubstr("x.k:3:6: error: expected a direction, + or -, not 'f1'; the "
+                        "direction stands before the needle, e.g. '+ f1'"));
+  EXPECT_THAT(said_of(head + "drop F1"), HasSubstr("not 'F1'; beds are written small, 'f1'"));
+  EXPECT_THAT(said_of(head + "drop f 1"), HasSubstr("not 'f'; its number follows without a blank"));
+  EXPECT_THAT(said_of(head + "rack 0,25"), HasSubstr("not '0,25'; write a point for the comma"));
+  EXPECT_THAT(said_of(";!knitout-2\n;;carriers: 1\n"),
+              HasSubstr("x.k:2:3: warning: unknown header 'carriers' is "
+                        "left out; write 'Carriers'"));
+  EXPECT_THAT(said_of(";!knitout-2\n;;Carriers:1 2\n"),
+              HasSubstr("x.k:2:12: warning: a blank is missing after the colon"));
+  EXPECT_THAT(said_of("\xef\xbb\xbf;!knitout-2\n;;Carriers: 1\n"),
+              HasSubstr("x.k:1:1: error: the file starts with a byte-order mark"));
+  EXPECT_THAT(said_of(";!knitout-2 \n;;Carriers: 1\n"),
+              HasSubstr("x.k:1:12: error: a blank in the first line"));
+  EXPECT_THAT(said_of(";!knitout- 2\n;;Carriers: 1\n"),
+              HasSubstr("x.k:1:11: error: a blank in the first line"));
+  EXPECT_THAT(said_of(head + "drop f+5"),
+              HasSubstr("x.k:3:7: error: a needle's number has no '+'; write 'f5'"));
   EXPECT_THAT(said_of(head + "purl + f1 1"), HasSubstr("x.k:3:1: error: unknown operation 'purl'"));
   EXPECT_THAT(said_of(head + "  knit x f1 1"),
               HasSubstr("x.k:3:8: error: expected a direction, + or -, not 'x'"));

@@ -106,13 +106,66 @@ TEST(Vermiculation, ErrorsPointAtTheCharacter) {
   EXPECT_THAT(errors_of(";;Loop-Length: 6\ng\n"), HasSubstr("2:16: error: the unit is missing after '6'"));
   EXPECT_THAT(errors_of(";;Yarn-A: unobtainium\ng\n"),
               HasSubstr("2:11: error: unknown material 'unobtainium'; known are "));
-  EXPECT_THAT(errors_of("gt\n"), HasSubstr("2:2: error: transfers and stitches in one pass"));
+  EXPECT_THAT(errors_of("gt\n"), HasSubstr("2:2: error: transfers or drops and stitches in one pass"));
+}
+
+TEST(Vermiculation, SplitsAndDropsGoWhereTheBedsStand) {
+  const std::string free = ";!vermiculation-1\n;;Edges: free\n";
+  Diagnostics diagnostics("s.verm");
+  EXPECT_EQ(listing(read_vermiculation(free + "ggg\nR1 .s. / ...\nR-1 S.. / ...\n", diagnostics)), "");
+  EXPECT_THAT(said(diagnostics), HasSubstr("'S' belongs to the other bed"));
+  Diagnostics good("s.verm");
+  // rear needle B faces front needle B + 1; what would leave the piece is a stitch
+  EXPECT_EQ(listing(read_vermiculation(free + "ggg\nR1 ss. / ...\nD-d\n", good)),
+            "in A; knit + f0 A; knit + f1 A; knit + f2 A; rack 1; miss - b2 A; miss - f2 A; split - f1 b0 A; "
+            "knit - f0 A; "
+            "drop b0; "
+            "drop f2; rack 0; out A");
+  EXPECT_EQ(listing(read_vermiculation(free + "ee\nS.\n", good)),
+            "in A; knit + b0 A; knit + b1 A; miss - b1 A; split - b0 f0 A; out A");
+  // with one needle for each wale all of its loops are knitted on the bed that the letter names
+  EXPECT_EQ(listing(read_vermiculation(free + "g\ns\ns\n", good)),
+            "in A; knit + f0 A; split - f0 b0 A; xfer b0 f0; split + f0 b0 A; out A");
+  EXPECT_EQ(said(good), "");
+}
+
+TEST(Vermiculation, ANotationThatIsKnittedOnceIsDoneToItsEnd) {
+  Diagnostics diagnostics("s.verm");
+  const std::string lines = "gg\n.t\ndD\n";
+  EXPECT_EQ(listing(read_vermiculation(";!vermiculation-1\n;;Edges: free\n" + lines, diagnostics)),
+            "in A; knit + f0 A; knit + f1 A; xfer f1 b1; drop f0; drop b1; out A");
+  EXPECT_EQ(
+      listing(read_vermiculation(";!vermiculation-1\n;;Edges: free\n;;Size: 2 x 1\n" + lines, diagnostics)),
+      "in A; knit + f0 A; knit + f1 A; out A");
 }
 
 TEST(Vermiculation, ErrorsOfTheGrammar) {
   EXPECT_THAT(errors_of("g\xc3\xa9g\n"), HasSubstr("2:2: error: unknown letter '\\xc3\\xa9'"));
   EXPECT_THAT(errors_of("e/g\n"), HasSubstr("2:1: error: 'e' belongs to the other bed; left of '/'"));
   EXPECT_THAT(errors_of("g/v\n"), HasSubstr("2:3: error: 'v' belongs to the other bed; right of '/'"));
+  EXPECT_THAT(errors_of("S/e\n"), HasSubstr("2:1: error: 'S' belongs to the other bed; left of '/'"));
+  EXPECT_THAT(errors_of("./d\n"), HasSubstr("2:3: error: 'd' belongs to the other bed; right of '/'"));
+  EXPECT_THAT(errors_of("gD\n"), HasSubstr("2:2: error: transfers or drops and stitches in one pass"));
+  EXPECT_THAT(errors_of("g\ng/e\ns/.\n"),
+              HasSubstr("4:1: error: a split needs needles that face each other"));
+  EXPECT_THAT(errors_of("g\nR-0.5 s/.\ng/e\n"), "");
+  EXPECT_THAT(errors_of("g\nD\n"), HasSubstr("3:1: warning: there is never a loop to move here"));
+  EXPECT_THAT(errors_of("g\nd\n"), "");
+  EXPECT_THAT(errors_of("knit + f1 A\n"),
+              HasSubstr("2:1: error: 'knit' is knitout; a fabric file has a letter"));
+  EXPECT_THAT(errors_of("g>\n"),
+              "wrong.verm:2:2: error: '>' stands before the letters of a pass, not after them\n");
+  EXPECT_THAT(errors_of("gV\n"),
+              HasSubstr("2:2: error: unknown letter 'V'; letters of stitches and tucks are small: 'v'"));
+  EXPECT_THAT(errors_of("g2\n"),
+              HasSubstr("2:2: error: unknown letter '2'; repeat a letter or a group by '*n'"));
+  EXPECT_THAT(errors_of("g_\n"), HasSubstr("2:2: error: unknown letter '_'; a missed needle is '.'"));
+  EXPECT_THAT(errors_of("g # x\n"), "wrong.verm:2:3: error: unknown letter '#'; a comment starts with ';'\n");
+  EXPECT_THAT(errors_of("[ge]*2\n"), HasSubstr("2:2: error: '[' stands on a line of its own"));
+  EXPECT_THAT(errors_of(";;Size 3 x 3\ng\n"), HasSubstr("2:7: warning: there is no ':' after 'Size'"));
+  EXPECT_THAT(errors_of(";;gage: 12\ng\n"),
+              HasSubstr("2:3: warning: unknown header 'gage' has no effect; write 'Gauge'"));
+  EXPECT_THAT(errors_of(";;mine: 12\ng\n"), HasSubstr("own headers start with 'X-'"));
   EXPECT_THAT(errors_of("g/\n"), HasSubstr("2:1: error: a pass on both beds names needles on both sides"));
   EXPECT_THAT(errors_of("g/e/g\n"), HasSubstr("2:4: error: a pass has two rows"));
   EXPECT_THAT(errors_of("g &\n"), HasSubstr("2:4: error: a pass of zero wales"));
@@ -130,7 +183,7 @@ TEST(Vermiculation, ErrorsOfTheGrammar) {
   EXPECT_THAT(errors_of("B: g\n"), HasSubstr("2:1: error: no yarn is called 'B'"));
   EXPECT_THAT(errors_of("A+A: g\n"), HasSubstr("2:3: error: yarn 'A' is named twice"));
   EXPECT_THAT(errors_of("A+: g\n"), HasSubstr("2:3: error: expected the name of a yarn"));
-  EXPECT_THAT(errors_of("A: t\n"), HasSubstr("2:1: error: a pass of transfers carries no yarn"));
+  EXPECT_THAT(errors_of("A: t\n"), HasSubstr("2:1: error: a pass of transfers or drops carries no yarn"));
   EXPECT_THAT(errors_of("[\ng\n"), HasSubstr("2:1: error: this '[' is never closed"));
   EXPECT_THAT(errors_of("g\n]*2\n"), HasSubstr("3:1: error: this ']' has no '['"));
   EXPECT_THAT(errors_of("[\ng\n] 2\n"), HasSubstr("4:3: error: expected how many times"));
@@ -241,7 +294,7 @@ TEST(Vermiculation, MissedAndInactiveNeedles) {
 }
 
 TEST(Vermiculation, TransfersThatNeverDoAnythingAreTold) {
-  EXPECT_THAT(errors_of("gg\n.T\n"), HasSubstr("3:2: warning: there is never a loop to transfer here"));
+  EXPECT_THAT(errors_of("gg\n.T\n"), HasSubstr("3:2: warning: there is never a loop to move here"));
   EXPECT_EQ(errors_of("gg\n.t\n"), "");
 }
 

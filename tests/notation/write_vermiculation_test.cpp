@@ -60,7 +60,7 @@ TEST(WriteVermiculation, ChangedCellsAreReadBackAndOtherLinesStand) {
       Pass& pass = line.passes[random.below(line.passes.size())];
       if (pass.cells.empty() || !pass.knits()) continue;
       Cell& cell = pass.cells[random.below(pass.cells.size())];
-      cell.letter = pass.both_beds ? "gv.-"[random.below(4)] : "gevn.-"[random.below(6)];
+      cell.letter = pass.both_beds ? "gvs.-"[random.below(5)] : "gevnsS.-"[random.below(8)];
     }
     const std::string text = write_vermiculation(notation);
     Diagnostics diagnostics("changed.verm");

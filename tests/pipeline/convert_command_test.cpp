@@ -81,7 +81,7 @@ TEST(ConvertCommand, KnitoutBecomesAFabricFileAndItsLossesAreTold) {
 TEST(ConvertCommand, KnitoutIsWrittenAnewInOneSpelling) {
   const TemporaryFolder folder;
   folder.write("a.k",
-               ";!knitout-2\r\n;;Carriers: A\r\n\tin  A;\r\nrack +0\r\nknit + f+1 A ; a remark\r\nout A\r\n");
+               ";!knitout-2\r\n;;Carriers: A\r\n\tin  A;\r\nrack +0\r\nknit + f1 A ; a remark\r\nout A\r\n");
   const CommandOutcome done = run_command({"convert", "a.k", "-o", "b.k"}, folder);
   EXPECT_EQ(done.status, 0) << done.err;
   EXPECT_EQ(file_content(folder.file("b.k")),

@@ -1,0 +1,98 @@
+// Stitch bindings of the second paper: what ties crossing yarns to each other.
+//
+// Barycentric: at a foot that is drawn through a head, a point with fixed barycentric coordinates in the
+// control points of one yarn coincides with one of the other yarn, C = sum_i w_i q_i = 0, linear in q: the
+// Jacobian is constant. Orientation springs between the yarns on both sides of that point push and pull, so
+// that each yarn keeps its side (figure 14 of the paper).
+//
+// Sliding ("free variables", Lenoir and others, GRAPHITE 2004): the places s, t of a contact on the two yarns
+// are unknowns without mass,
+//   C(q, s, t) = p_a(s) - p_b(t) - g n = 0,   p_a' . lambda = 0,   p_b' . lambda = 0
+// The last two say that the multiplier does no work along the yarns. They make lambda normal to both yarns
+// and r = p_a - p_b the shortest connection there, so that s and t follow from q, and one equation is left:
+//   D(q) = min_(s,t) |p_a(s) - p_b(t)| = g,   dD/dq = n (h_a(s) - h_b(t)),   n = r / D
+// Friction along the yarns is Coulomb's law with a short sticking spring (mechanics/energies/friction.hpp),
+// loaded by the multiplier of the step before.
+#pragma once
+#include <array>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "dynamics/spline_model.hpp"
+#include "geometry/fabric.hpp"
+#include "mechanics/energies/friction.hpp"
+
+namespace loopwright {
+
+struct BarycentricBinding {
+  std::vector<std::pair<int, double>> weights;  // control points of the model; sum of weights: 0
+
+  Vec3 error(std::span<const Vec3> place) const;
+};
+
+// A place on a yarn.
+struct YarnPlace {
+  int yarn = 0;
+  double t = 0;
+};
+
+// U = 1/2 k (|p_a - p_b| - rest)^2 between fixed parameters of two yarns.
+struct OrientationSpring {
+  YarnPlace a, b;
+  double rest = 1, stiffness = 1;
+};
+
+struct SlidingBinding {
+  YarnPlace a, b;         // free variables: where the yarns touch now
+  double distance = 1;    // g
+  double multiplier = 0;  // force along n: negative where the yarns press on each other
+  double friction = 0;    // coefficient
+  Vec3 slip;              // elastic slip of the friction, tangential
+};
+
+// The shortest connection near a binding's last one.
+struct Connection {
+  CurvePoint a, b;
+  Vec3 normal;          // n, from b to a
+  double distance = 0;  // D
+};
+// Moves the free variables s and t of `binding` to the places that are nearest to each other, downhill from
+// where they are (yarns may slide from segment to segment, not past their ends).
+Connection follow(const SplineModel& model, std::span<const Vec3> place, SlidingBinding& binding);
+// The second derivative of D by the 8 control points (4 of a, 4 of b), s and t following:
+//   D_qq - D_qs (D_ss)^-1 D_sq
+std::array<std::array<double, 24>, 24> distance_hessian(const Connection& connection);
+
+// A foot of a loop and the head that it is drawn through, as stretches of yarn (parameters, begin < end).
+struct Foot {
+  int child = 0, parent = 0;  // yarns
+  double begin = 0, end = 0, head_begin = 0, head_end = 0;
+};
+// Two feet for every interlacing of a fabric with both loops inside. Any structure: tucks and held loops have
+// heads that the loops drawn through them pass.
+std::vector<Foot> feet(const Fabric& fabric);
+
+// Where a foot touches the head: the nearest approaches, at most two (behind the leg, in front of the head),
+// at least one unless the two are one stretch of yarn.
+struct FootContacts {
+  std::vector<std::pair<YarnPlace, YarnPlace>> touch;  // (on the child, on the parent)
+  std::vector<double> distance;                        // of each
+};
+FootContacts foot_contacts(const SplineModel& model, std::span<const Vec3> place, const Foot& foot);
+
+struct Bindings {
+  std::vector<BarycentricBinding> barycentric;
+  std::vector<OrientationSpring> springs;
+  std::vector<SlidingBinding> sliding;
+};
+
+// One barycentric binding a foot, with orientation springs at its contacts that rest at the distances which
+// `place` has. Bindings whose control points are all held are left out.
+Bindings barycentric_bindings(const SplineModel& model, std::span<const Vec3> place,
+                              std::span<const Foot> feet, double spring_stiffness);
+// One sliding binding for every contact of a foot, at the distance which `place` has.
+Bindings sliding_bindings(const SplineModel& model, std::span<const Vec3> place, std::span<const Foot> feet,
+                          double friction);
+
+}  // namespace loopwright

@@ -152,8 +152,8 @@ SwatchPrediction predict_by_cell(const std::filesystem::path& file, const Swatch
     loaded.grow_in = false;
     loaded.model.plates = relaxed.plates;
     loaded.history = relaxed.history;
-    loaded.model.load = {machine.load_N / all_courses * p.cell_courses / force_unit,
-                         machine.load_N / all_wales * p.cell_wales / force_unit, 0};
+    loaded.model.load = {machine.course_load_N / all_courses * p.cell_courses / force_unit,
+                         machine.wale_load_N / all_wales * p.cell_wales / force_unit, 0};
     const RelaxResult stretched = relax(relaxed.fabric, loaded);
     p.stretched_width_mm = inner(stretched.fabric.width, p.cell_wales, measured_wales);
     p.stretched_height_mm = inner(stretched.fabric.height, p.cell_courses, measured_courses);

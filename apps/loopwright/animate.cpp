@@ -1,5 +1,5 @@
 // loopwright animate: the motion of the loop-scale model from its start to the stable state, as pictures and
-// as a VTK time series.
+// as a VTK time series; the yarn model's is in animate_yarn.cpp.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "animate.hpp"
 #include "base/parallel.hpp"
 #include "files.hpp"
 #include "interrupt.hpp"
@@ -16,12 +17,23 @@
 #include "progress_bar.hpp"
 
 namespace loopwright {
-namespace {
 
 std::string frame_name(int frame, const char* suffix) {
   std::string number = std::to_string(frame);
   return "frame_" + std::string(4 - std::min<std::size_t>(number.size(), 4), '0') + number + suffix;
 }
+
+std::filesystem::path frame_folder(const std::string& out) {
+  std::filesystem::path folder(out);
+  std::error_code fault;
+  std::filesystem::create_directories(folder, fault);
+  if (!std::filesystem::is_directory(folder))
+    throw std::invalid_argument(out + ": cannot make this folder: " + fault.message());
+  require_writable((folder / "series.pvd").string());
+  return folder;
+}
+
+namespace {
 
 // How long until nothing moves that could be seen: a run that keeps nothing.
 double visible_time(const LoopModel& model) {
@@ -46,17 +58,13 @@ Bounds joined(const Bounds& a, const Bounds& b) {
 }  // namespace
 
 int run(const AnimateCommand& command) {
+  if (command.model == "yarn") return animate_yarn(command);
   const RenderOptions picture = render_options(command.picture, "frame.png");
   const StructureStyle style = structure_style(command.style).value_or(StructureStyle::net);
   const std::optional<LoopModel> model = read_loop_model(command.file, command.loop);
   if (!model) return exit_error;
   set_thread_count(command.threads);
-  const std::filesystem::path folder(command.out);
-  std::error_code fault;
-  std::filesystem::create_directories(folder, fault);
-  if (!std::filesystem::is_directory(folder))
-    throw std::invalid_argument(command.out + ": cannot make this folder: " + fault.message());
-  require_writable((folder / "series.pvd").string());
+  const std::filesystem::path folder = frame_folder(command.out);
 
   const InterruptGuard guard;
   const double seconds = command.seconds.value_or(visible_time(*model));

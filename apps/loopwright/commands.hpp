@@ -90,6 +90,9 @@ int run(const RenderCommand& command);
 struct AnimateCommand {
   std::string file, out;
   std::string model = "loop", style = "structure";
+  std::string binding = "contact";  // yarn model: barycentric, sliding, contact
+  PieceRequest piece{.start_from_cell = true};
+  double stretch = 0;  // yarn model: share by which the sides are pulled apart
   LoopRequest loop;
   PictureRequest picture;
   int frames = 48, threads = 0;

@@ -208,14 +208,20 @@ void add_commands(CLI::App& app, Commands& commands, Action& action) {
   add_loop_options(*render, commands.render.loop);
   render->callback([&] { action = [&] { return run(commands.render); }; });
 
-  CLI::App* animate = app.add_subcommand("animate", "Motion of the loop model: pictures and a VTK series");
+  CLI::App* animate = app.add_subcommand("animate", "Motion of loops or of yarns: pictures and a VTK series");
   animate->add_option("FILE", commands.animate.file, "Knitout or fabric file")->required();
   animate->add_option("-o,--out", commands.animate.out, "Folder for the frames")
       ->type_name("DIR")
       ->required();
   animate->add_option("--model", commands.animate.model, "What moves")
-      ->check(CLI::IsMember({"loop"}))
+      ->check(CLI::IsMember({"loop", "yarn"}))
       ->capture_default_str();
+  animate->add_option("--binding", commands.animate.binding, "Yarn model: what holds yarns to each other")
+      ->check(CLI::IsMember({"barycentric", "sliding", "contact"}))
+      ->capture_default_str();
+  animate->add_option("--stretch", commands.animate.stretch, "Yarn model: pull the sides apart by this share")
+      ->check(CLI::Range(-0.5, 3.0));
+  add_piece_options(*animate, commands.animate.piece);
   animate->add_option("--style", commands.animate.style, "The net with its curves, or front and rear loops")
       ->check(CLI::IsMember({"structure", "sides"}))
       ->capture_default_str();

@@ -85,7 +85,7 @@ BarycentricBinding foot_binding(const SplineModel& model, std::span<const Vec3> 
     parent.push_back(b);
   }
   // Enough of each yarn that it is bent out of a plane there.
-  constexpr int more = 3;
+  constexpr int more = 2;
   std::array<Side, 2> side{mean_weights(model, place, child, more), mean_weights(model, place, parent, more)};
   Vec3 middle;
   for (const Side& s : side)
@@ -109,12 +109,12 @@ Vec3 BarycentricBinding::error(std::span<const Vec3> place) const {
   return sum;
 }
 
-Connection follow(const SplineModel& model, std::span<const Vec3> place, SlidingBinding& binding) {
+ShortestConnection follow(const SplineModel& model, std::span<const Vec3> place, SlidingBinding& binding) {
   constexpr int most_steps = 30;
   constexpr double most_slide = 0.5, tolerance = 1e-12;
   const double end_a = model.yarns[static_cast<std::size_t>(binding.a.yarn)].segments(),
                end_b = model.yarns[static_cast<std::size_t>(binding.b.yarn)].segments();
-  Connection c;
+  ShortestConnection c;
   for (int step = 0;; ++step) {
     c.a = curve_point(model, place, binding.a.yarn, binding.a.t);
     c.b = curve_point(model, place, binding.b.yarn, binding.b.t);
@@ -144,7 +144,7 @@ Connection follow(const SplineModel& model, std::span<const Vec3> place, Sliding
   return c;
 }
 
-std::array<std::array<double, 24>, 24> distance_hessian(const Connection& c) {
+std::array<std::array<double, 24>, 24> distance_hessian(const ShortestConnection& c) {
   std::array<std::array<double, 24>, 24> h{};
   const Vec3& n = c.normal;
   const auto across = [&](const Vec3& v) { return (v - dot(v, n) * n) / c.distance; };  // (I - n n') v / D

@@ -52,17 +52,17 @@ struct SlidingBinding {
 };
 
 // The shortest connection near a binding's last one.
-struct Connection {
+struct ShortestConnection {
   CurvePoint a, b;
   Vec3 normal;          // n, from b to a
   double distance = 0;  // D
 };
 // Moves the free variables s and t of `binding` to the places that are nearest to each other, downhill from
 // where they are (yarns may slide from segment to segment, not past their ends).
-Connection follow(const SplineModel& model, std::span<const Vec3> place, SlidingBinding& binding);
+ShortestConnection follow(const SplineModel& model, std::span<const Vec3> place, SlidingBinding& binding);
 // The second derivative of D by the 8 control points (4 of a, 4 of b), s and t following:
 //   D_qq - D_qs (D_ss)^-1 D_sq
-std::array<std::array<double, 24>, 24> distance_hessian(const Connection& connection);
+std::array<std::array<double, 24>, 24> distance_hessian(const ShortestConnection& connection);
 
 // A foot of a loop and the head that it is drawn through, as stretches of yarn (parameters, begin < end).
 struct Foot {

@@ -26,7 +26,7 @@ Blending catmull_rom(double t) {
   return blending_of({{{0, -t, 2 * t, -t}, {1, 0, t - 3, 2 - t}, {0, t, 3 - 2 * t, t - 2}, {0, 0, -t, t}}});
 }
 
-Blending blending_of(const Matrix4& coefficient) {
+Blending blending_of(const BlendingMatrix& coefficient) {
   for (std::size_t k = 0; k < 4; ++k) {
     double sum = 0, size = 0;
     for (std::size_t i = 0; i < 4; ++i) {
@@ -42,16 +42,16 @@ Blending blending_of(const Matrix4& coefficient) {
   return {coefficient};
 }
 
-Matrix4 product_integrals(const Blending& blending, int derivative) {
+BlendingMatrix product_integrals(const Blending& blending, int derivative) {
   if (derivative < 0 || derivative > 2)
     throw std::invalid_argument("product_integrals: derivative must be 0, 1 or 2");
-  Matrix4 c = blending.coefficient;
+  BlendingMatrix c = blending.coefficient;
   for (int d = 0; d < derivative; ++d)
     for (auto& row : c) {
       for (std::size_t k = 0; k < 3; ++k) row[k] = static_cast<double>(k + 1) * row[k + 1];
       row[3] = 0;
     }
-  Matrix4 integral{};
+  BlendingMatrix integral{};
   for (std::size_t a = 0; a < 4; ++a)
     for (std::size_t b = 0; b < 4; ++b)
       for (std::size_t k = 0; k < 4; ++k)

@@ -6,14 +6,14 @@
 
 namespace loopwright {
 
-using Matrix4 = std::array<std::array<double, 4>, 4>;
+using BlendingMatrix = std::array<std::array<double, 4>, 4>;
 
 struct BlendingWeights {
   std::array<double, 4> value, slope, curve;  // h, h', h''
 };
 
 struct Blending {
-  Matrix4 coefficient{};
+  BlendingMatrix coefficient{};
 
   BlendingWeights weights(double u) const;
 };
@@ -25,9 +25,9 @@ Blending uniform_b_spline();
 Blending catmull_rom(double tension = 0.5);
 // Any other: Bezier-like, hermite-like, ... Throws std::invalid_argument if a coefficient is not finite or
 // the weights do not add up to 1 at every u: such a curve would not follow its points when they are moved.
-Blending blending_of(const Matrix4& coefficient);
+Blending blending_of(const BlendingMatrix& coefficient);
 
 // int_0^1 h_a^(k) h_b^(k) du for derivative k = 0, 1, 2; exact. Throws std::invalid_argument for other k.
-Matrix4 product_integrals(const Blending& blending, int derivative);
+BlendingMatrix product_integrals(const Blending& blending, int derivative);
 
 }  // namespace loopwright

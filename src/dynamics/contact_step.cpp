@@ -99,6 +99,15 @@ bool YarnMotion::contact_step(double dt, StepReport& report) {
     if (model_.held[i] != 0) held.nodes[i] = inertial[i];
   const SafeStep led = safe_step(yarns, *s.assembly, state, held, outer + loose, outer, gap_share);
   if (led.scale < 1) return false;
+  // The others too, if their velocities carry them to a better start.
+  YarnState carried = held;
+  carried.nodes = inertial;
+  const auto start_energy = [&](const YarnState& at) {
+    return incremental(at.nodes, inertial, dt) + s.assembly->energy(at).total();
+  };
+  if (safe_step(yarns, *s.assembly, state, carried, outer + loose, outer, gap_share).scale == 1 &&
+      start_energy(carried) < start_energy(held))
+    held = carried;
   state = held;
 
   std::vector<Vec3> g, apart(n), heavy;

@@ -18,7 +18,7 @@ YarnMotion::YarnMotion(SplineModel model, MotionState state, Bindings bindings, 
       contact_(std::move(contact)),
       solver_(std::make_unique<Solver>()) {
   require_sound(model_, state_);
-  if (contact_ && options_.integrator == Integrator::explicit_euler)
+  if (contact_ && options_.integrator == MotionStepper::explicit_euler)
     throw std::invalid_argument(
         "contact needs the implicit step: its shell is too stiff for an explicit one");
   if (contact_ && !(bindings_.barycentric.empty() && bindings_.springs.empty() && bindings_.sliding.empty()))
@@ -78,7 +78,7 @@ void YarnMotion::prepare_friction(double dt) {
     Friction& law = friction_[k];
     law.load = binding.friction * std::abs(binding.multiplier);
     // An explicit step holds only springs that are soft against the mass on them, about one unit.
-    if (options_.integrator == Integrator::explicit_euler)
+    if (options_.integrator == MotionStepper::explicit_euler)
       law.softness = std::max(law.softness, 8 * law.load * dt * dt);
     law.normal = start_[k].normal;
     law.slip = law.tangential(binding.slip);
@@ -115,7 +115,7 @@ void YarnMotion::merge_sliding() {
 
 // Whether a sliding binding has anything to move: where it has slid between held points it stands for
 // nothing.
-bool YarnMotion::can_move(const Connection& connection) const {
+bool YarnMotion::can_move(const ShortestConnection& connection) const {
   constexpr double least = 1e-2;
   double sum = 0;
   for (std::size_t i = 0; i < 4; ++i) {
@@ -130,7 +130,7 @@ bool YarnMotion::can_move(const Connection& connection) const {
 namespace {
 
 // Relative place of the material points that touched at the step's start.
-Vec3 material_gap(const Friction& law, const Connection& start, const std::vector<Vec3>& place) {
+Vec3 material_gap(const Friction& law, const ShortestConnection& start, const std::vector<Vec3>& place) {
   Vec3 r;
   for (std::size_t i = 0; i < 4; ++i)
     r += law.weight_a[i] * place[static_cast<std::size_t>(start.a.first) + i] -
@@ -248,7 +248,7 @@ double YarnMotion::constraint_error() const {
   for (const BarycentricBinding& binding : bindings_.barycentric)
     largest = std::max(largest, norm(binding.error(state_.place)));
   for (SlidingBinding binding : bindings_.sliding) {
-    const Connection c = follow(model_, state_.place, binding);
+    const ShortestConnection c = follow(model_, state_.place, binding);
     if (can_move(c)) largest = std::max(largest, std::abs(c.distance - binding.distance));
   }
 
@@ -262,7 +262,7 @@ std::vector<Vec3> YarnMotion::forces() const {
     for (const auto& [point, w] : bindings_.barycentric[k].weights)
       g[static_cast<std::size_t>(point)] += w * multiplier_[k];
   for (SlidingBinding binding : bindings_.sliding) {
-    const Connection c = follow(model_, state_.place, binding);
+    const ShortestConnection c = follow(model_, state_.place, binding);
     for (std::size_t i = 0; i < 4; ++i) {
       g[static_cast<std::size_t>(c.a.first) + i] += (binding.multiplier * c.a.weights.value[i]) * c.normal;
       g[static_cast<std::size_t>(c.b.first) + i] -= (binding.multiplier * c.b.weights.value[i]) * c.normal;

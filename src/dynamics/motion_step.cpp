@@ -39,39 +39,40 @@ StepReport YarnMotion::step(double dt, std::span<const Vec3> held_place) {
     return held_place.empty() ? Vec3{} : (held_place[i] - from[i]) / dt;
   };
   for (std::size_t i = 0; i < from.size(); ++i)
-    if (model_.held[i] != 0 && options_.integrator == Integrator::explicit_euler)
+    if (model_.held[i] != 0 && options_.integrator == MotionStepper::explicit_euler)
       state_.velocity[i] = held_velocity(i);
   StepReport report;
   if (contact_) grow_core();
-  if (options_.integrator == Integrator::explicit_euler) return explicit_step(dt);
+  if (options_.integrator == MotionStepper::explicit_euler) return explicit_step(dt);
 
-  // A step that fails is tried in halves, each half again if need be.
-  double done = 0, part = 1;
+  // A step that fails is tried in halves, each half again if need be; the next step starts with what went
+  // well.
+  double done = 0;
+  const double least = std::ldexp(1.0, -options_.most_halvings);
   while (done < 1 - 1e-12) {
+    const double part = std::min(part_, 1 - done);
     const MotionState before = state_;
     const Bindings bindings_before = bindings_;
     const std::vector<Vec3> multiplier_before = multiplier_;
     const ContactHistory history_before = solver_->assembly ? solver_->assembly->history() : ContactHistory{};
+    const int newton_before = report.newton;
     for (std::size_t i = 0; i < from.size(); ++i)
       if (model_.held[i] != 0) state_.velocity[i] = held_velocity(i);
-    if (contact_ ? contact_step(part * dt, report) : implicit_step(part * dt, report)) {
-      done += part;
-      state_.time = before.time + part * dt;
+    const bool good = contact_ ? contact_step(part * dt, report) : implicit_step(part * dt, report);
+    if (!good && part > least) {
+      ++report.halvings;
+      part_ = 0.5 * part;
+      state_ = before;
+      bindings_ = bindings_before;
+      multiplier_ = multiplier_before;
+      if (solver_->assembly) solver_->assembly->set_history(history_before);
       continue;
     }
-    if (report.halvings >= options_.most_halvings) {
-      // What was reached is kept: it may be good enough to go on from, and the report says what it is.
-      done += part;
-      state_.time = before.time + part * dt;
-      report.converged = false;
-      continue;
-    }
-    ++report.halvings;
-    part *= 0.5;
-    state_ = before;
-    bindings_ = bindings_before;
-    multiplier_ = multiplier_before;
-    if (solver_->assembly) solver_->assembly->set_history(history_before);
+    // At the smallest part what was reached is kept: the report says that it is not to the tolerance.
+    if (!good) report.converged = false;
+    done += part;
+    state_.time = before.time + part * dt;
+    if (good && report.newton - newton_before <= options_.most_newton / 2) part_ = std::min(1.0, 2 * part_);
   }
   return report;
 }
@@ -128,7 +129,7 @@ StepReport YarnMotion::explicit_step(double dt) {
           saddle.add(joint_row(k, c), joint_row(k, c), -saddle_softness);
         }
       for (std::size_t k = 0; k < slides; ++k) {
-        const Connection& c = start_[k];
+        const ShortestConnection& c = start_[k];
         drift[k] = 0;
         if (can_move(c)) drift[k] = -back * (c.distance - bindings_.sliding[k].distance);
         for (std::size_t i = 0; can_move(c) && i < 8; ++i) {
@@ -202,16 +203,24 @@ bool YarnMotion::implicit_step(double dt, StepReport& report) {
       sum += std::abs(c.x) + std::abs(c.y) + std::abs(c.z);
     }
     for (SlidingBinding binding : bindings_.sliding) {
-      const Connection c = follow(model_, place, binding);
+      const ShortestConnection c = follow(model_, place, binding);
       if (can_move(c)) sum += std::abs(c.distance - binding.distance);
     }
     return sum;
   };
 
+  // Start from where the yarns are, or from where their velocities carry them, whichever is nearer to the
+  // end.
+  constexpr double usual_penalty = 10;
+  const auto start_merit = [&](const std::vector<Vec3>& place) {
+    return incremental(place, inertial, dt) + usual_penalty * off(place);
+  };
+  if (start_merit(inertial) < start_merit(x)) x = inertial;
+
   BandHessian band;
   std::vector<double> b(rows);
   SaddleSolver& saddle = solver_->saddle;
-  std::vector<Connection> now(slides);
+  std::vector<ShortestConnection> now(slides);
   double shift = solver_->shift;
   bool settled = false;  // the last step moved nothing beyond rounding
   for (int newton = 0;; ++newton) {
@@ -309,9 +318,7 @@ bool YarnMotion::implicit_step(double dt, StepReport& report) {
         const double length = norm(r);
         if (length == 0) continue;
         const Vec3 normal = r / length;
-        // Across a pressed spring the true stiffness is negative; leaving that out costs a few steps and
-        // keeps the matrix positive.
-        const double across = std::max(0.0, spring.stiffness * (1 - spring.rest / length)),
+        const double across = spring.stiffness * (1 - spring.rest / length),
                      along = spring.stiffness - across;
         add_pair(points_of(a, c), [&](std::size_t k, std::size_t l, std::size_t p, std::size_t q) {
           const double wk = k < 4 ? a.weights.value[k] : -c.weights.value[k - 4],

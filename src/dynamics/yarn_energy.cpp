@@ -96,8 +96,9 @@ double add_mean(Element& e, const GaussWeights& w, double stiffness, double even
 // f; derivatives follow by the chain rule.
 double add_bend(Element& e, const GaussWeights& w, double stiffness, double rest,
                 const std::array<double, 4>& natural, bool with_hessian) {
-  // Where yarn is straight, kappa has a corner; rounding it off by this little keeps slopes finite.
-  constexpr double corner = 1e-8;
+  // Where yarn is straight, kappa has a corner: rounded off over a tenth of a segment's turn, with the least
+  // energy where it was.
+  const double corner = 0.01 / (rest * rest);
   double energy = 0;
   for (std::size_t g = 0; g < 4; ++g) {
     const auto& h1 = w[g].slope;
@@ -111,7 +112,7 @@ double add_bend(Element& e, const GaussWeights& w, double stiffness, double rest
     if (natural[g] == 0) {
       energy += s * f;
     } else {
-      const double k0 = natural[g], k = std::sqrt(std::max(f, 0.0) + corner);
+      const double k0 = std::sqrt(natural[g] * natural[g] + corner), k = std::sqrt(std::max(f, 0.0) + corner);
       energy += s * (k - k0) * (k - k0);
       F1 = s * (1 - k0 / k);
       F2 = 0.5 * s * k0 / (k * k * k);
@@ -208,7 +209,7 @@ ElasticEnergy elastic_energy(const SplineModel& model, std::span<const Vec3> pla
 }
 
 BandMatrix linear_bend_matrix(const SplineYarn& yarn) {
-  const Matrix4 K2 = product_integrals(yarn.blending, 2);
+  const BlendingMatrix K2 = product_integrals(yarn.blending, 2);
   BandMatrix m(static_cast<std::size_t>(yarn.points));
   for (std::size_t s = 0; s < static_cast<std::size_t>(yarn.segments()); ++s) {
     const double h = yarn.rest_length[s];

@@ -9,8 +9,8 @@
 //
 //   mean: 1/2 EA/h [ (L - h)^2 + evenness (int |p'|^2 du - L^2) ],  L = int |p'| du
 //
-//   bend: 1/2 B h int (kappa - kappa_0)^2 du,  kappa = |p' x p''| / |p'|^3
-//
+//   bend: 1/2 B h int (kappa - kappa_0)^2 du,  kappa = |p' x p''| / |p'|^3; with natural
+// curvature both kappas are rounded off, sqrt(kappa^2 + (0.1/h)^2), so that straight yarn has no corner
 // 4-point Gauss a segment; h: rest length. Finite displacements after Nocent and Remion, Eurographics
 // workshop on computer animation and simulation 2001, in the form of Green and Lagrange.
 #pragma once

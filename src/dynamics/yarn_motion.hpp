@@ -23,15 +23,15 @@
 
 namespace loopwright {
 
-enum class Integrator : std::uint8_t { explicit_euler, implicit_euler };
+enum class MotionStepper : std::uint8_t { explicit_euler, implicit_euler };
 
 struct MotionOptions {
-  Integrator integrator = Integrator::implicit_euler;
+  MotionStepper integrator = MotionStepper::implicit_euler;
   double tolerance = 1e-4;             // implicit: largest force on a control point that is left
   double constraint_tolerance = 1e-8;  // implicit: largest |C|
   int most_newton = 12;                // before a step is halved
-  int most_halvings = 5;
-  double baumgarte = 0.2;  // explicit: share of C that one step takes back
+  int most_halvings = 5;               // down to this power of two of a step
+  double baumgarte = 0.2;              // explicit: share of C that one step takes back
 };
 
 // Contact of src/mechanics: shell, core and friction between any two pieces of yarn of a fabric of B-splines.
@@ -100,7 +100,7 @@ class YarnMotion {
   void grow_core();
   void prepare_friction(double dt);
   void merge_sliding();
-  bool can_move(const Connection& connection) const;
+  bool can_move(const ShortestConnection& connection) const;
   void accept_friction();
   double potential(const std::vector<Vec3>& place) const;
   double gradient(const std::vector<Vec3>& place, std::vector<Vec3>& g, BandHessian* band) const;
@@ -114,11 +114,12 @@ class YarnMotion {
   MotionOptions options_;
   std::optional<FabricContact> contact_;
   int rebound_ = 0;
+  double part_ = 1;  // of a step that went well last
   std::vector<BandMatrix> mass_;
-  std::vector<double> lumped_;      // row sums of M
-  std::vector<Vec3> multiplier_;    // of barycentric bindings
-  std::vector<Friction> friction_;  // of sliding bindings, as the step began
-  std::vector<Connection> start_;   // of sliding bindings, as the step began
+  std::vector<double> lumped_;             // row sums of M
+  std::vector<Vec3> multiplier_;           // of barycentric bindings
+  std::vector<Friction> friction_;         // of sliding bindings, as the step began
+  std::vector<ShortestConnection> start_;  // of sliding bindings, as the step began
   std::unique_ptr<Solver> solver_;
 };
 

@@ -37,7 +37,7 @@ Scene straight(int segments, double h, double EA, double B, StretchLaw law = Str
   return s;
 }
 
-YarnMotion motion_of(const Scene& s, Integrator integrator, double tolerance = 1e-9) {
+YarnMotion motion_of(const Scene& s, MotionStepper integrator, double tolerance = 1e-9) {
   MotionOptions options;
   options.integrator = integrator;
   options.tolerance = tolerance;
@@ -46,7 +46,7 @@ YarnMotion motion_of(const Scene& s, Integrator integrator, double tolerance = 1
 
 // Symplectic and implicit Euler fall by g t^2/2 (1 +- 1/n) in n steps; nothing may change the yarn's shape.
 TEST(Motion, FreeFall) {
-  for (const Integrator integrator : {Integrator::explicit_euler, Integrator::implicit_euler})
+  for (const MotionStepper integrator : {MotionStepper::explicit_euler, MotionStepper::implicit_euler})
     for (const Blending& blending : {uniform_b_spline(), catmull_rom()}) {
       Scene s = straight(9, 1, 100, 1, StretchLaw::mean, blending);
       s.model.gravity = {0.2, -9.81, 0};
@@ -67,7 +67,7 @@ TEST(Motion, FallThroughAMedium) {
   Scene s = straight(9, 1, 100, 1);
   s.model.gravity = {0, -2, 0};
   s.model.drag = 4;
-  for (const Integrator integrator : {Integrator::explicit_euler, Integrator::implicit_euler}) {
+  for (const MotionStepper integrator : {MotionStepper::explicit_euler, MotionStepper::implicit_euler}) {
     YarnMotion motion = motion_of(s, integrator);
     for (int k = 0; k < 500; ++k) motion.step(0.001);
     EXPECT_NEAR(motion.state().velocity[4].y, -0.5 * (1 - std::exp(-2)), 1e-3);
@@ -91,12 +91,12 @@ Scene tumbling(StretchLaw law) {
 TEST(Motion, MomentaAreKept) {
   for (const StretchLaw law : {StretchLaw::springs, StretchLaw::green, StretchLaw::mean}) {
     const Scene s = tumbling(law);
-    YarnMotion motion = motion_of(s, Integrator::explicit_euler);
+    YarnMotion motion = motion_of(s, MotionStepper::explicit_euler);
     const Vec3 p = motion.momentum(), l = motion.angular_momentum();
     for (int k = 0; k < 2000; ++k) motion.step(0.002);
     EXPECT_LT(distance(motion.momentum(), p), 1e-10 * norm(p));
     EXPECT_LT(distance(motion.angular_momentum(), l), 1e-10 * norm(l));
-    YarnMotion damped = motion_of(s, Integrator::implicit_euler);
+    YarnMotion damped = motion_of(s, MotionStepper::implicit_euler);
     for (int k = 0; k < 100; ++k) damped.step(0.01);
     EXPECT_LT(distance(damped.momentum(), p), 1e-6 * norm(p));
     EXPECT_LT(distance(damped.angular_momentum(), l), 0.1 * norm(l));
@@ -109,7 +109,7 @@ TEST(Motion, IsTheSameInEveryAttitude) {
   Scene s = tumbling(StretchLaw::mean), t = s;
   for (Vec3& v : t.state.place) v = turned(v);
   for (Vec3& v : t.state.velocity) v = turned(v);
-  YarnMotion a = motion_of(s, Integrator::explicit_euler), b = motion_of(t, Integrator::explicit_euler);
+  YarnMotion a = motion_of(s, MotionStepper::explicit_euler), b = motion_of(t, MotionStepper::explicit_euler);
   for (int k = 0; k < 300; ++k) a.step(0.002), b.step(0.002);
   for (std::size_t i = 0; i < s.state.place.size(); ++i)
     EXPECT_LT(distance(turned(a.state().place[i]), b.state().place[i]), 1e-9);
@@ -137,7 +137,7 @@ TEST(Motion, LongitudinalWaveSpeed) {
     Scene s = straight(40, 1, EA, 0, law);
     for (std::size_t i = 0; i < s.state.place.size(); ++i)
       s.state.place[i].x += 1e-4 * std::cos(pi * s.state.place[i].x / L);
-    YarnMotion motion = motion_of(s, Integrator::explicit_euler);
+    YarnMotion motion = motion_of(s, MotionStepper::explicit_euler);
     const double quarter = first_zero(
         motion, 0.002, [](const MotionState& now) { return now.place[1].x - now.place[41].x + 40; });
     const double c = L / (2 * quarter);
@@ -153,7 +153,7 @@ TEST(Motion, TransverseWaveSpeedOfAStretchedYarn) {
   for (const std::size_t i : {0, 1, 2}) s.model.held[i] = s.model.held[42 - i] = 1;
   // three held points fix a B-spline's end and its slope; the string moves between the inner ones, nearly
   for (std::size_t i = 3; i < 40; ++i) s.state.place[i].y += 1e-3 * std::sin(pi * (s.state.place[i].x) / L);
-  YarnMotion motion = motion_of(s, Integrator::explicit_euler);
+  YarnMotion motion = motion_of(s, MotionStepper::explicit_euler);
   const double quarter = first_zero(motion, 0.002, [](const MotionState& now) { return now.place[21].y; });
   const double c = L / (2 * quarter);
   EXPECT_NEAR(c, std::sqrt(EA * e * (1 + e)), 0.06 * c);
@@ -185,7 +185,7 @@ TEST(Motion, HangingChainBecomesACatenary) {
   s.model.held.front() = s.model.held.back() = 1;
   s.model.gravity = {0, -1, 0};
   s.model.drag = 1;
-  YarnMotion motion = motion_of(s, Integrator::implicit_euler, 1e-6);
+  YarnMotion motion = motion_of(s, MotionStepper::implicit_euler, 1e-6);
   for (int k = 0; k < 300; ++k) motion.step(0.5);
   ASSERT_LT(motion.energy().kinetic, 1e-9);
   // From the middle out: the catenary through the yarn's lowest point with its own a = H / (rho g); at arc
@@ -211,7 +211,7 @@ TEST(Motion, EnergyBalanceWithViscosity) {
   Scene s = tumbling(StretchLaw::mean);
   s.model.drag = 0.8;
   const auto run = [&](double dt) {
-    YarnMotion motion = motion_of(s, Integrator::explicit_euler);
+    YarnMotion motion = motion_of(s, MotionStepper::explicit_euler);
     const double start = motion.energy().total();
     double taken = 0, power = 2 * s.model.drag * motion.energy().kinetic;
     while (motion.state().time < 2 - 1e-9) {
@@ -230,7 +230,7 @@ TEST(Motion, EnergyBalanceWithViscosity) {
 
 TEST(Motion, EnergyStaysBoundedWithoutViscosity) {
   const Scene s = tumbling(StretchLaw::mean);
-  YarnMotion motion = motion_of(s, Integrator::explicit_euler);
+  YarnMotion motion = motion_of(s, MotionStepper::explicit_euler);
   const double start = motion.energy().total();
   for (int k = 0; k < 20000; ++k) {
     motion.step(0.002);
@@ -243,18 +243,18 @@ TEST(Motion, EnergyStaysBoundedWithoutViscosity) {
 // Both steps are of first order in time: halving dt halves the error against a run with a much smaller one.
 TEST(Motion, OrderInTime) {
   const Scene s = tumbling(StretchLaw::mean);
-  const auto end = [&](Integrator integrator, int steps) {
+  const auto end = [&](MotionStepper integrator, int steps) {
     YarnMotion motion = motion_of(s, integrator);
     for (int k = 0; k < steps; ++k) motion.step(0.5 / steps);
     return motion.state().place;
   };
-  const auto reference = end(Integrator::explicit_euler, 16000);
+  const auto reference = end(MotionStepper::explicit_euler, 16000);
   const auto error = [&](const std::vector<Vec3>& place) {
     double sum = 0;
     for (std::size_t i = 0; i < place.size(); ++i) sum += squared_norm(place[i] - reference[i]);
     return std::sqrt(sum);
   };
-  for (const Integrator integrator : {Integrator::explicit_euler, Integrator::implicit_euler}) {
+  for (const MotionStepper integrator : {MotionStepper::explicit_euler, MotionStepper::implicit_euler}) {
     const double coarse = error(end(integrator, 250)), fine = error(end(integrator, 500));
     EXPECT_NEAR(std::log2(coarse / fine), 1, 0.15);
   }
@@ -263,12 +263,12 @@ TEST(Motion, OrderInTime) {
 TEST(Motion, RefusesWhatIsNotSound) {
   Scene s = straight(5, 1, 1, 1);
   s.state.place[2].y = std::nan("");
-  EXPECT_THROW(motion_of(s, Integrator::implicit_euler), std::invalid_argument);
+  EXPECT_THROW(motion_of(s, MotionStepper::implicit_euler), std::invalid_argument);
   s = straight(5, 1, 1, 1);
   s.model.yarns[0].density[1][2] = 0;
-  EXPECT_THROW(motion_of(s, Integrator::implicit_euler), std::invalid_argument);
+  EXPECT_THROW(motion_of(s, MotionStepper::implicit_euler), std::invalid_argument);
   s = straight(5, 1, 1, 1);
-  YarnMotion motion = motion_of(s, Integrator::implicit_euler);
+  YarnMotion motion = motion_of(s, MotionStepper::implicit_euler);
   EXPECT_THROW(motion.step(0), std::invalid_argument);
   EXPECT_THROW(motion.step(std::nan("")), std::invalid_argument);
 }

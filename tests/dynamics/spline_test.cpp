@@ -13,7 +13,7 @@
 namespace loopwright {
 namespace {
 
-void expect_matrix(const Matrix4& got, const Matrix4& wanted, double over) {
+void expect_matrix(const BlendingMatrix& got, const BlendingMatrix& wanted, double over) {
   for (std::size_t a = 0; a < 4; ++a)
     for (std::size_t b = 0; b < 4; ++b)
       EXPECT_NEAR(got[a][b], wanted[a][b] / over, 1e-15 * 1e3 / over + 1e-14) << a << ' ' << b;
@@ -42,7 +42,7 @@ TEST(Blending, UniformBSplineMatrices) {
 
 TEST(Blending, CatmullRomWithAnyTension) {
   for (const double s : {0.0, 0.3, 0.5, 0.8, 1.0}) {
-    const Matrix4 m = product_integrals(catmull_rom(s), 0);
+    const BlendingMatrix m = product_integrals(catmull_rom(s), 0);
     const double m00 = s * s / 105, m11 = 13.0 / 35 + 13 * s / 210 + s * s / 105,
                  m12 = 9.0 / 70 + 11 * s / 105 + s * s / 140, m01 = -11 * s / 210 - s * s / 140,
                  m02 = -13 * s / 420 - s * s / 105, m03 = s * s / 140;
@@ -53,14 +53,15 @@ TEST(Blending, CatmullRomWithAnyTension) {
 
 TEST(Blending, SumsAndWhatDerivativesTakeAway) {
   // a blending that is neither of the two: half way between them
-  Matrix4 mixed{};
+  BlendingMatrix mixed{};
   for (std::size_t a = 0; a < 4; ++a)
     for (std::size_t k = 0; k < 4; ++k)
       mixed[a][k] = 0.5 * (catmull_rom().coefficient[a][k] + uniform_b_spline().coefficient[a][k]);
   const std::array<Blending, 3> all{catmull_rom(0.7), uniform_b_spline(), blending_of(mixed)};
   for (std::size_t which = 0; which < 3; ++which) {
     const Blending& c = all[which];
-    const Matrix4 m = product_integrals(c, 0), k1 = product_integrals(c, 1), k2 = product_integrals(c, 2);
+    const BlendingMatrix m = product_integrals(c, 0), k1 = product_integrals(c, 1),
+                         k2 = product_integrals(c, 2);
     double total = 0;
     for (std::size_t a = 0; a < 4; ++a) {
       double one1 = 0, one2 = 0, linear2 = 0;
@@ -80,7 +81,7 @@ TEST(Blending, SumsAndWhatDerivativesTakeAway) {
 }
 
 TEST(Blending, RefusesWeightsThatDoNotAddUp) {
-  Matrix4 c = uniform_b_spline().coefficient;
+  BlendingMatrix c = uniform_b_spline().coefficient;
   c[2][1] += 1e-3;
   EXPECT_THROW(blending_of(c), std::invalid_argument);
   c[2][1] = std::nan("");

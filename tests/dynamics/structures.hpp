@@ -46,15 +46,14 @@ inline SmallPiece small_piece(const std::string& text) {
 inline SmallPiece small_piece(const std::filesystem::path& file, const std::string& size) {
   std::ifstream stream(file);
   std::string text, line;
-  while (std::getline(stream, line))
-    text += (line.starts_with(";;Size:") ? ";;Size: " + size : line) + '\n';
+  while (std::getline(stream, line)) text += (line.starts_with(";;Size:") ? ";;Size: " + size : line) + '\n';
   return small_piece(text);
 }
 
 inline std::vector<std::filesystem::path> library() {
   std::vector<std::filesystem::path> files;
-  for (const auto& entry :
-       std::filesystem::directory_iterator(std::filesystem::path(LOOPWRIGHT_SOURCE_DIR) / "examples/structures"))
+  for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(LOOPWRIGHT_SOURCE_DIR) /
+                                                               "examples/structures"))
     if (entry.path().extension() == ".verm") files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   return files;

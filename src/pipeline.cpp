@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "experiments/piece_size.hpp"
+#include "geometry/find_repeat.hpp"
 #include "geometry/fit_fabric.hpp"
 #include "geometry/periodic_cell.hpp"
 #include "geometry/start_from_cell.hpp"
@@ -64,13 +65,23 @@ bool is_free_piece(const Program& program, const PieceRequest& request) {
 
 bool is_framed(const RelaxOptions& options) { return options.model.free.width || options.model.free.height; }
 
+// The repeat that a fabric file states, or the one that a knitout programme is found to have.
+CellRange repeat_of(const Knitting& knitting) {
+  if (!knitting.program.repeat_starts.empty()) return cell_range(knitting.program);
+  const std::optional<FoundRepeat> found = find_repeat(knitting.graph);
+  if (!found)
+    throw std::invalid_argument(
+        "periodic cell: no repeat was found in the programme; ask for a part of it with --window instead");
+  return found->range;
+}
+
 WantedPart wanted_part(const Knitting& knitting, const PieceRequest& request,
                        const GeometryOptions& options) {
   const YarnGraph& graph = knitting.graph;
   const PlacedPiece piece = place_type_points(graph, options);
   if (request.window) return window_in_frame(graph, options, piece, *request.window);
   if (request.periodic || edges_of(knitting.program) == Edges::periodic)
-    return {cut_periodic_cell(graph, options, piece, cell_range(knitting.program)), {}};
+    return {cut_periodic_cell(graph, options, piece, repeat_of(knitting)), {}};
   return {cut_window(graph, options, piece, program_window(graph, knitting.program.window)), {}};
 }
 

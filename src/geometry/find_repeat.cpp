@@ -241,4 +241,25 @@ std::optional<FoundRepeat> find_repeat(const YarnGraph& graph, const LoopSelecti
   return std::nullopt;
 }
 
+std::optional<FoundRepeat> find_repeat(const YarnGraph& graph) {
+  const std::map<int, int> rows = rows_of_passes(graph);
+  double first = 0, last = 0;
+  for (std::size_t i = 0; i < graph.loops.size(); ++i) {
+    first = i == 0 ? graph.loops[i].slot : std::min(first, graph.loops[i].slot);
+    last = i == 0 ? graph.loops[i].slot : std::max(last, graph.loops[i].slot);
+  }
+  const double middle_row = (static_cast<double>(rows.size()) - 1) / 2, middle_slot = (first + last) / 2;
+  for (const double share : {0.9, 2.0 / 3, 0.5}) {
+    LoopSelection region(graph.loops.size(), 0);
+    for (std::size_t i = 0; i < region.size(); ++i) {
+      const Loop& loop = graph.loops[i];
+      if (std::abs(rows.at(loop.pass) - middle_row) < share * (middle_row + 0.5) &&
+          std::abs(loop.slot - middle_slot) < share * (last - first + 1) / 2)
+        region[i] = 1;
+    }
+    if (std::optional<FoundRepeat> found = find_repeat(graph, region)) return found;
+  }
+  return std::nullopt;
+}
+
 }  // namespace loopwright

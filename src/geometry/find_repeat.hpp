@@ -23,5 +23,8 @@ struct FoundRepeat {
 // repeat), along the courses its widest part. Nothing where there is no such repeat.
 std::optional<FoundRepeat> find_repeat(const YarnGraph& graph, const LoopSelection& region,
                                        int least_seen = 4);
+// The same for a whole piece, whose borders are of other stitches: looked for in its middle nine tenths, two
+// thirds and half.
+std::optional<FoundRepeat> find_repeat(const YarnGraph& graph);
 
 }  // namespace loopwright

@@ -96,6 +96,39 @@ TEST(Road, PeriodicCellRelaxesAndIsMeasured) {
     EXPECT_EQ(again[key], j[key]) << key;
 }
 
+TEST(Road, PeriodicCellOfKnitoutIsItsRepeat) {
+  // 1x1 rib without a word about its repeat: the same cell as that of the letters "ge".
+  std::string rib = ";!knitout-2\n;;Carriers: 1\n;;Gauge: 12\n;;X-Loop-Length: 5.9 mm\nin 1\n";
+  constexpr int wales = 16;
+  const auto course = [&rib](bool right, const char* op) {
+    for (int k = 0; k < wales; ++k) {
+      const int w = right ? k : wales - 1 - k;
+      rib +=
+          std::string(op) + (right ? " + " : " - ") + (w % 2 == 0 ? 'f' : 'b') + std::to_string(w) + " 1\n";
+    }
+  };
+  course(true, "tuck");
+  for (int c = 0; c < 12; ++c) course(c % 2 == 1, "knit");
+  rib += "out 1\n";
+  const TemporaryFolder folder;
+  folder.write("rib.k", rib);
+  folder.write("rib.verm", ";!vermiculation-1\n;;Gauge: 12\n;;Loop-Length: 5.9 mm\n;;Edges: periodic\nge\n");
+  const CommandOutcome knitout =
+      run_command({"relax", "rib.k", "--periodic", "-o", "k.h5", "--json", "-"}, folder);
+  ASSERT_EQ(knitout.status, 0) << knitout.err;
+  const CommandOutcome letters = run_command({"relax", "rib.verm", "-o", "v.h5", "--json", "-"}, folder);
+  ASSERT_EQ(letters.status, 0) << letters.err;
+  const nlohmann::json k = json_of(knitout.out), v = json_of(letters.out);
+  EXPECT_EQ(k["loops"], 2);
+  EXPECT_EQ(k["interlacings_intact"], 2);
+  EXPECT_EQ(k["pass_throughs"], 0);
+  EXPECT_NEAR(k["loop_length_mm"].get<double>(), v["loop_length_mm"].get<double>(), 1e-3);
+  // Friction lets a rib come to rest over a range of widths; the way to it is the same, its rounding not.
+  EXPECT_NEAR(k["width_mm"].get<double>(), v["width_mm"].get<double>(), 0.02 * v["width_mm"].get<double>());
+  EXPECT_NEAR(k["height_mm"].get<double>(), v["height_mm"].get<double>(),
+              0.02 * v["height_mm"].get<double>());
+}
+
 TEST(Road, WindowHasTheWalesAndCoursesAskedFor) {
   const TemporaryFolder folder;
   folder.write("plain.verm", plain);

@@ -13,10 +13,13 @@
 #include "dynamics/yarn_motion.hpp"
 #include "files.hpp"
 #include "interrupt.hpp"
+#include "machine/run_machine.hpp"
+#include "notation/read_program.hpp"
 #include "outputs/image.hpp"
 #include "outputs/write_vtk.hpp"
 #include "outputs/write_vtk_yarns.hpp"
 #include "progress_bar.hpp"
+#include "topology/build_yarn_graph.hpp"
 
 namespace loopwright {
 namespace {
@@ -45,6 +48,13 @@ EdgeLoad load_of(const AnimateCommand& command, const Fabric& fabric, const Moti
     load.target = place;
     for (Vec3& p : load.target) p.x += command.stretch * (p.x - 0.5 * (low.x + high.x));
   } else if (hangs) {
+    // More than the two ends of every yarn: a frame, without which courses and wales would run.
+    const auto ends = static_cast<std::ptrdiff_t>(4 * fabric.yarns.size());
+    if (std::count(load.held.begin(), load.held.end(), 1) > ends)
+      throw std::invalid_argument(
+          "a piece that hangs needs edges that do not run: write Edges: bound-off in the fabric file, or "
+          "pull "
+          "this one with --stretch");
     for (std::size_t i = 0; i < place.size(); ++i) load.held[i] = place[i].y > high.y - course ? 1 : 0;
   }
   constexpr double earth = 9.81;
@@ -93,6 +103,31 @@ YarnMotion motion_of(const AnimateCommand& command, const RelaxResult& relaxed, 
                     std::move(shells));
 }
 
+// As read_piece, with another size than the file's: a window would leave the loops of its frame without the
+// interlacings by which they are bound.
+std::optional<Piece> piece_of_size(const std::string& file, const std::string& size) {
+  const PieceRequest request{.start_from_cell = true};
+  if (size.empty() || names_a_state(file)) return read_piece(file, request);
+  const WindowSize wanted = parsed_window(size);
+  FabricOptions options;
+  options.size_wales = wanted.wales;
+  options.size_courses = wanted.courses;
+  Diagnostics diagnostics(file);
+  Knitting knitting;
+  knitting.program = read_program(file, diagnostics, options);
+  knitting.record = run_machine(knitting.program, diagnostics);
+  knitting.graph = build_yarn_graph(knitting.program, knitting.record, diagnostics);
+  std::cerr << diagnostics;
+  if (!diagnostics.ok()) return std::nullopt;
+  Fabric fabric = first_geometry(knitting, request);
+  RelaxOptions relaxing = relax_options(fabric, knitting.program, request);
+  if (std::optional<Fabric> started = start_from_relaxed_cell(knitting, request, fabric, relaxing)) {
+    fabric = std::move(*started);
+    relaxing.grow_in = false;
+  }
+  return Piece{saved_state(fabric, relaxing, relaxing.grow_in ? 0 : 1), relaxing};
+}
+
 struct Moment {
   double time_s = 0;
   Fabric fabric;
@@ -103,7 +138,7 @@ struct Moment {
 int animate_yarn(const AnimateCommand& command) {
   const RenderOptions picture = render_options(command.picture, "frame.png");
   const std::filesystem::path folder = frame_folder(command.out);
-  std::optional<Piece> piece = read_piece(command.file, command.piece);
+  const std::optional<Piece> piece = piece_of_size(command.file, command.size);
   if (!piece) return exit_error;
   set_thread_count(command.threads);
   const MotionUnits units =

@@ -91,7 +91,7 @@ struct AnimateCommand {
   std::string file, out;
   std::string model = "loop", style = "structure";
   std::string binding = "contact";  // yarn model: barycentric, sliding, contact
-  PieceRequest piece{.start_from_cell = true};
+  std::string size;                 // yarn model: wales x courses; empty: as the file says
   double stretch = 0;  // yarn model: share by which the sides are pulled apart
   LoopRequest loop;
   PictureRequest picture;

@@ -221,7 +221,10 @@ void add_commands(CLI::App& app, Commands& commands, Action& action) {
       ->capture_default_str();
   animate->add_option("--stretch", commands.animate.stretch, "Yarn model: pull the sides apart by this share")
       ->check(CLI::Range(-0.5, 3.0));
-  add_piece_options(*animate, commands.animate.piece);
+  animate
+      ->add_option("--size", commands.animate.size,
+                   "Yarn model: wales and courses, instead of the file's Size")
+      ->type_name("WxC");
   animate->add_option("--style", commands.animate.style, "The net with its curves, or front and rear loops")
       ->check(CLI::IsMember({"structure", "sides"}))
       ->capture_default_str();

@@ -18,7 +18,7 @@ YarnMotion::YarnMotion(SplineModel model, MotionState state, Bindings bindings, 
       contact_(std::move(contact)),
       solver_(std::make_unique<Solver>()) {
   require_sound(model_, state_);
-  if (contact_ && options_.integrator == MotionStepper::explicit_euler)
+  if (contact_ && options_.stepper == MotionStepper::explicit_euler)
     throw std::invalid_argument(
         "contact needs the implicit step: its shell is too stiff for an explicit one");
   if (contact_ && !(bindings_.barycentric.empty() && bindings_.springs.empty() && bindings_.sliding.empty()))
@@ -78,7 +78,7 @@ void YarnMotion::prepare_friction(double dt) {
     Friction& law = friction_[k];
     law.load = binding.friction * std::abs(binding.multiplier);
     // An explicit step holds only springs that are soft against the mass on them, about one unit.
-    if (options_.integrator == MotionStepper::explicit_euler)
+    if (options_.stepper == MotionStepper::explicit_euler)
       law.softness = std::max(law.softness, 8 * law.load * dt * dt);
     law.normal = start_[k].normal;
     law.slip = law.tangential(binding.slip);

@@ -39,11 +39,11 @@ StepReport YarnMotion::step(double dt, std::span<const Vec3> held_place) {
     return held_place.empty() ? Vec3{} : (held_place[i] - from[i]) / dt;
   };
   for (std::size_t i = 0; i < from.size(); ++i)
-    if (model_.held[i] != 0 && options_.integrator == MotionStepper::explicit_euler)
+    if (model_.held[i] != 0 && options_.stepper == MotionStepper::explicit_euler)
       state_.velocity[i] = held_velocity(i);
   StepReport report;
   if (contact_) grow_core();
-  if (options_.integrator == MotionStepper::explicit_euler) return explicit_step(dt);
+  if (options_.stepper == MotionStepper::explicit_euler) return explicit_step(dt);
 
   // A step that fails is tried in halves, each half again if need be; the next step starts with what went
   // well.

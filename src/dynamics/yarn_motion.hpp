@@ -26,7 +26,7 @@ namespace loopwright {
 enum class MotionStepper : std::uint8_t { explicit_euler, implicit_euler };
 
 struct MotionOptions {
-  MotionStepper integrator = MotionStepper::implicit_euler;
+  MotionStepper stepper = MotionStepper::implicit_euler;
   double tolerance = 1e-4;             // implicit: largest force on a control point that is left
   double constraint_tolerance = 1e-8;  // implicit: largest |C|
   int most_newton = 12;                // before a step is halved

@@ -101,12 +101,12 @@ TEST(JerseyStitch, PieceStaysBoundInMotion) {
                                     ? sliding_bindings(piece.model, piece.state.place, piece.feet, 0.2)
                                     : barycentric_bindings(piece.model, piece.state.place, piece.feet, 100);
       EXPECT_EQ(bindings.barycentric.size() + bindings.sliding.size(), sliding ? 32u : 16u);
-      for (const MotionStepper integrator : {MotionStepper::explicit_euler, MotionStepper::implicit_euler}) {
+      for (const MotionStepper stepper : {MotionStepper::explicit_euler, MotionStepper::implicit_euler}) {
         MotionOptions options;
-        options.integrator = integrator;
+        options.stepper = stepper;
         YarnMotion motion(piece.model, piece.state, bindings, options);
         const double start = motion.energy().total();
-        const bool explicit_step = integrator == MotionStepper::explicit_euler;
+        const bool explicit_step = stepper == MotionStepper::explicit_euler;
         for (int k = 0; k < (explicit_step ? 300 : 40); ++k) {
           const StepReport report = motion.step(explicit_step ? 0.004 : 0.5);
           EXPECT_TRUE(report.converged) << k;

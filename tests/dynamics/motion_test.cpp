@@ -37,20 +37,20 @@ Scene straight(int segments, double h, double EA, double B, StretchLaw law = Str
   return s;
 }
 
-YarnMotion motion_of(const Scene& s, MotionStepper integrator, double tolerance = 1e-9) {
+YarnMotion motion_of(const Scene& s, MotionStepper stepper, double tolerance = 1e-9) {
   MotionOptions options;
-  options.integrator = integrator;
+  options.stepper = stepper;
   options.tolerance = tolerance;
   return YarnMotion(s.model, s.state, {}, options);
 }
 
 // Symplectic and implicit Euler fall by g t^2/2 (1 +- 1/n) in n steps; nothing may change the yarn's shape.
 TEST(Motion, FreeFall) {
-  for (const MotionStepper integrator : {MotionStepper::explicit_euler, MotionStepper::implicit_euler})
+  for (const MotionStepper stepper : {MotionStepper::explicit_euler, MotionStepper::implicit_euler})
     for (const Blending& blending : {uniform_b_spline(), catmull_rom()}) {
       Scene s = straight(9, 1, 100, 1, StretchLaw::mean, blending);
       s.model.gravity = {0.2, -9.81, 0};
-      YarnMotion motion = motion_of(s, integrator);
+      YarnMotion motion = motion_of(s, stepper);
       constexpr int steps = 100;
       for (int k = 0; k < steps; ++k) motion.step(0.01);
       for (std::size_t i = 0; i < s.state.place.size(); ++i) {
@@ -67,8 +67,8 @@ TEST(Motion, FallThroughAMedium) {
   Scene s = straight(9, 1, 100, 1);
   s.model.gravity = {0, -2, 0};
   s.model.drag = 4;
-  for (const MotionStepper integrator : {MotionStepper::explicit_euler, MotionStepper::implicit_euler}) {
-    YarnMotion motion = motion_of(s, integrator);
+  for (const MotionStepper stepper : {MotionStepper::explicit_euler, MotionStepper::implicit_euler}) {
+    YarnMotion motion = motion_of(s, stepper);
     for (int k = 0; k < 500; ++k) motion.step(0.001);
     EXPECT_NEAR(motion.state().velocity[4].y, -0.5 * (1 - std::exp(-2)), 1e-3);
     for (int k = 0; k < 5000; ++k) motion.step(0.001);
@@ -243,8 +243,8 @@ TEST(Motion, EnergyStaysBoundedWithoutViscosity) {
 // Both steps are of first order in time: halving dt halves the error against a run with a much smaller one.
 TEST(Motion, OrderInTime) {
   const Scene s = tumbling(StretchLaw::mean);
-  const auto end = [&](MotionStepper integrator, int steps) {
-    YarnMotion motion = motion_of(s, integrator);
+  const auto end = [&](MotionStepper stepper, int steps) {
+    YarnMotion motion = motion_of(s, stepper);
     for (int k = 0; k < steps; ++k) motion.step(0.5 / steps);
     return motion.state().place;
   };
@@ -254,8 +254,8 @@ TEST(Motion, OrderInTime) {
     for (std::size_t i = 0; i < place.size(); ++i) sum += squared_norm(place[i] - reference[i]);
     return std::sqrt(sum);
   };
-  for (const MotionStepper integrator : {MotionStepper::explicit_euler, MotionStepper::implicit_euler}) {
-    const double coarse = error(end(integrator, 250)), fine = error(end(integrator, 500));
+  for (const MotionStepper stepper : {MotionStepper::explicit_euler, MotionStepper::implicit_euler}) {
+    const double coarse = error(end(stepper, 250)), fine = error(end(stepper, 500));
     EXPECT_NEAR(std::log2(coarse / fine), 1, 0.15);
   }
 }

@@ -1,5 +1,6 @@
 // Small pieces of the library's structures, and of letters, up to their first curves.
 #pragma once
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <sstream>

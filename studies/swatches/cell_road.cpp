@@ -88,7 +88,7 @@ double swatch_mass_g(const YarnGraph& graph, const PlacedPiece& piece, const Geo
 
 static RelaxOptions swatch_options(const Fabric& first, const Program& program, int most_iterations) {
   RelaxOptions options = relax_options(first, program, {});
-  options.model.free = {};  // the lattice of a cell, whatever edges the programme has
+  options.model.free = {};   // the lattice of a cell, whatever edges the programme has
   options.tolerance = 1e-3;  // sizes do not change in the fourth figure below that
   options.most_iterations = most_iterations;
   return options;

@@ -17,7 +17,7 @@ struct MachineModel {
   // crosses it) and of cloth whose stitches show both faces.
   double one_layer_mm = 1.0, two_layers_mm = 1.85;
   // Yarn.
-  double diameter_mm = 0.39, bend_stiffness_mN_mm2 = 12.7, friction = 0.25, linear_density_tex = 66.7;
+  double diameter_mm = 0.39, bend_stiffness_mN_mm2 = 12.7, friction = 0.25, linear_density_tex = 70.7;
   // Of the stretched swatches, 608 g: along the courses, borne by all of them, and along the wales.
   double course_load_N = 5.96, wale_load_N = 0;
 };

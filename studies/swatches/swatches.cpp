@@ -4,7 +4,10 @@
 //   study_swatches predict FOLDER NAME ROWS TABLE one swatch, by its cell and by the net: ROWS/NAME.row
 //   study_swatches collect FOLDER ROWS OUT        all rows: OUT/results.csv, details.csv, figures on the
 //   screen
-// studies/swatches/run does all of it.
+//   study_swatches uncertainty FOLDER ROWS OUT N  swatches whose cells have N loops or fewer, with what is
+//   not
+//                                                 known well at its bounds: OUT/uncertainty.csv
+// studies/swatches/run does all but the last.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -190,6 +193,56 @@ int collect(const std::filesystem::path& folder, const std::filesystem::path& ro
   return 0;
 }
 
+// How far a prediction moves with what is not known well: friction from none to no slip, take-down by a
+// factor of three, diameter by a twentieth, yarn in a loop by a fiftieth.
+struct Variant {
+  const char* name;
+  MachineModel machine;
+};
+
+std::vector<Variant> variants() {
+  std::vector<Variant> all{{"as_stated", {}}};
+  const auto with = [&all](const char* name, double MachineModel::*member, double value) {
+    MachineModel machine;
+    machine.*member = value;
+    all.push_back({name, machine});
+  };
+  const MachineModel usual;
+  with("frictionless", &MachineModel::friction, 0);
+  with("friction_0.15", &MachineModel::friction, 0.15);
+  with("friction_0.40", &MachineModel::friction, 0.4);
+  with("no_slip", &MachineModel::friction, 5);
+  with("take_down_third", &MachineModel::take_down_N, usual.take_down_N / 3);
+  with("take_down_thrice", &MachineModel::take_down_N, usual.take_down_N * 3);
+  with("thinner_yarn", &MachineModel::diameter_mm, usual.diameter_mm * 0.95);
+  with("thicker_yarn", &MachineModel::diameter_mm, usual.diameter_mm * 1.05);
+  with("shorter_loops", &MachineModel::loop_length_mm, usual.loop_length_mm * 0.98);
+  with("longer_loops", &MachineModel::loop_length_mm, usual.loop_length_mm * 1.02);
+  return all;
+}
+
+int uncertainty(const std::filesystem::path& folder, const std::filesystem::path& rows_folder,
+                const std::filesystem::path& out, double most_loops) {
+  AtomicFile file(out / "uncertainty.csv");
+  file.stream() << "swatch,variant,width_mm,height_mm,converged,interlacings_intact\n";
+  for (const MeasuredSwatch& s : measured_swatches(folder)) {
+    auto row = read_row(rows_folder / (s.name + ".row"));
+    if (!row.contains("loops") || row["loops"] == 0 || row["loops"] > most_loops) continue;
+    for (const Variant& variant : variants()) {
+      SwatchWork work;
+      work.machine = variant.machine;
+      const SwatchPrediction p = predict_by_cell(s.file, work);
+      char line[300];
+      std::snprintf(line, sizeof line, "%s,%s,%.2f,%.2f,%d,%d\n", s.name.c_str(), variant.name, p.width_mm,
+                    p.height_mm, p.converged ? 1 : 0, p.interlacings_intact == p.interlacings ? 1 : 0);
+      file.stream() << line;
+      std::cout << line << std::flush;
+    }
+  }
+  file.commit();
+  return 0;
+}
+
 int run(const std::vector<std::string>& words) {
   if (words.size() == 2 && words[0] == "cells") {
     write_loop_sizes(words[1], relax_face_cells({}));
@@ -203,9 +256,13 @@ int run(const std::vector<std::string>& words) {
     set_thread_count(1);
     return predict(words[1], words[2], words[3], words[4]);
   }
+  if (words.size() == 5 && words[0] == "uncertainty") {
+    set_thread_count(1);
+    return uncertainty(words[1], words[2], words[3], std::stod(words[4]));
+  }
   if (words.size() == 4 && words[0] == "collect") return collect(words[1], words[2], words[3]);
   std::cerr << "study_swatches cells TABLE | list FOLDER | predict FOLDER NAME ROWS TABLE | collect FOLDER "
-               "ROWS OUT\n";
+               "ROWS OUT | uncertainty FOLDER ROWS OUT MOST_LOOPS\n";
   return 2;
 }
 

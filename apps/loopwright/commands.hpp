@@ -49,6 +49,8 @@ struct StretchCommand {
   std::string direction = "course";  // course, wale, both, shear
   std::vector<double> to{0.3};
   double step = 0.02;
+  std::vector<double> load{};         // N/m; not empty: forces are prescribed, not strains
+  std::optional<double> load_step{};  // default: a twentieth of the largest load
   bool held_across = false;
   int threads = 0;  // 0: all
 };
@@ -92,7 +94,7 @@ struct AnimateCommand {
   std::string model = "loop", style = "structure";
   std::string binding = "contact";  // yarn model: barycentric, sliding, contact
   std::string size;                 // yarn model: wales x courses; empty: as the file says
-  double stretch = 0;  // yarn model: share by which the sides are pulled apart
+  double stretch = 0;               // yarn model: share by which the sides are pulled apart
   LoopRequest loop;
   PictureRequest picture;
   int frames = 48, threads = 0;

@@ -173,11 +173,18 @@ void add_commands(CLI::App& app, Commands& commands, Action& action) {
   stretch->add_option("--direction", commands.stretch.direction, "What is prescribed")
       ->check(CLI::IsMember({"course", "wale", "both", "shear"}))
       ->capture_default_str();
-  stretch->add_option("--to", commands.stretch.to, "Strains to go to, in order: 0.3 0 loads and unloads")
-      ->capture_default_str();
+  CLI::Option* strains =
+      stretch->add_option("--to", commands.stretch.to, "Strains to go to, in order: 0.3 0 loads and unloads")
+          ->capture_default_str();
   stretch->add_option("--step", commands.stretch.step, "Largest step of strain")
       ->check(CLI::Range(1e-4, 0.2))
       ->capture_default_str();
+  stretch->add_option("--load", commands.stretch.load, "Forces to go to instead, N/m: 20 0 loads and unloads")
+      ->excludes(strains);
+  stretch
+      ->add_option("--load-step", commands.stretch.load_step,
+                   "Largest step of force, N/m; a twentieth if not said")
+      ->check(CLI::PositiveNumber);
   stretch->add_flag("--held-across", commands.stretch.held_across, "The other size stays as it is");
   stretch->add_option("--csv", commands.stretch.csv, "Write the points as CSV, - for standard output")
       ->type_name("FILE");

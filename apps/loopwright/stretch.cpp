@@ -1,4 +1,6 @@
 // loopwright stretch: a relaxed cell or piece pulled step by step, and what its frame feels.
+#include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <limits>
 #include <sstream>
@@ -24,6 +26,13 @@ StretchTest stretch_test(const StretchCommand& command) {
                                                  : StretchDirection::shear;
   test.turning_points = command.to;
   test.largest_step = command.step;
+  if (!command.load.empty()) {
+    test.control = StretchControl::load;
+    test.turning_points = command.load;
+    double largest = 0;
+    for (const double load : command.load) largest = std::max(largest, std::abs(load));
+    test.largest_step = command.load_step.value_or(largest > 0 ? largest / 20 : 1);
+  }
   test.free_across = !command.held_across;
   return test;
 }
@@ -94,14 +103,15 @@ int run(const StretchCommand& command) {
   double longest = 0;
   for (double from = 0; const double to : test.turning_points) longest += std::abs(to - from), from = to;
   double gone = 0, last = 0;
+  const bool loaded = test.control == StretchControl::load;
   const StretchResult result = stretch(relaxed, options, test, [&](const StretchPoint& p) {
-    const double now = command.direction == "wale"    ? p.wale_strain
-                       : command.direction == "shear" ? p.shear
-                                                      : p.course_strain;
+    const double now = command.direction == "wale"    ? (loaded ? p.wale_force : p.wale_strain)
+                       : command.direction == "shear" ? (loaded ? p.shear_force : p.shear)
+                                                      : (loaded ? p.course_force : p.course_strain);
     gone += std::abs(now - last), last = now;
     std::ostringstream note;
     note.precision(3);
-    note << "strain " << now;
+    note << (loaded ? "force " : "strain ") << now;
     bar.show(longest > 0 ? gone / longest : 1, note.str());
     return !interrupted();
   });

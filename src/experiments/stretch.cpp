@@ -11,19 +11,30 @@ namespace loopwright {
 namespace {
 
 void check_test(const Fabric& fabric, const StretchTest& test) {
-  if (test.turning_points.empty()) throw std::invalid_argument("a stretch test needs a strain to go to");
-  for (const double strain : test.turning_points)
-    if (!(strain > -0.9 && strain <= 5))
+  const bool strained = test.control == StretchControl::strain;
+  if (test.turning_points.empty())
+    throw std::invalid_argument(strained ? "a stretch test needs a strain to go to"
+                                         : "a stretch test needs a load to go to");
+  for (const double to : test.turning_points) {
+    if (strained && !(to > -0.9 && to <= 5))
       throw std::invalid_argument("a strain must lie between -0.9 and 5, that is -90 % and 500 %");
-  if (!(test.largest_step > 0)) throw std::invalid_argument("the strain step must be a positive number");
+    if (!strained && !(std::abs(to) <= 1e6))
+      throw std::invalid_argument("a load must be a number of N/m, at most a million");
+  }
+  if (!(test.largest_step > 0) || !std::isfinite(test.largest_step))
+    throw std::invalid_argument("the step must be a positive number");
+  double way = 0;
+  for (double from = 0; const double to : test.turning_points) way += std::abs(to - from), from = to;
+  if (way / test.largest_step > 1e5)
+    throw std::invalid_argument("that is more than 100000 steps: take larger ones");
   if (!(fabric.width > 0) || !(fabric.height > 0))
     throw std::invalid_argument("only a periodic cell or a piece with a frame can be stretched");
   if (test.direction == StretchDirection::shear && !fabric.periodic)
     throw std::invalid_argument("shear is for periodic cells");
 }
 
-// All strains on the way: equal steps between turning points, none larger than the largest step.
-std::vector<double> strains_on_the_way(const StretchTest& test) {
+// All strains, or loads, on the way: equal steps between turning points, none larger than the largest step.
+std::vector<double> steps_on_the_way(const StretchTest& test) {
   std::vector<double> all;
   double from = 0;
   for (const double to : test.turning_points) {
@@ -49,6 +60,13 @@ Fabric deformed(const Fabric& fabric, double width, double height, double skew) 
 }
 
 FreeMeasures free_measures(const StretchTest& test, const FreeMeasures& usual) {
+  if (test.control == StretchControl::load) {
+    const bool course = test.direction == StretchDirection::course,
+               wale = test.direction == StretchDirection::wale,
+               shear = test.direction == StretchDirection::shear;
+    return {(wale || shear) ? test.free_across && usual.width : true,
+            (course || shear) ? test.free_across && usual.height : true, shear};
+  }
   FreeMeasures free{false, false, false};
   if (test.direction == StretchDirection::course) free.height = test.free_across && usual.height;
   if (test.direction == StretchDirection::wale) free.width = test.free_across && usual.width;
@@ -108,14 +126,20 @@ StretchResult stretch(const RelaxResult& relaxed, const RelaxOptions& options, c
   const bool course = test.direction == StretchDirection::course || test.direction == StretchDirection::both;
   const bool wale = test.direction == StretchDirection::wale || test.direction == StretchDirection::both;
   const bool shear = test.direction == StretchDirection::shear;
-  for (const double strain : strains_on_the_way(test)) {
+  for (const double step : steps_on_the_way(test)) {
     if (result.stopped || at.stopped) break;
     const Fabric& now = at.fabric;
-    const Fabric moved = deformed(now, course ? start.width * (1 + strain) : now.width,
-                                  wale ? start.height * (1 + strain) : now.height,
-                                  shear ? start.skew + strain * start.height : now.skew);
     held.history = std::move(at.history);
-    at = relax(moved, held);
+    if (test.control == StretchControl::load) {
+      held.model.load = {course ? step * height / force_unit : 0, wale ? step * width / force_unit : 0,
+                         shear ? step * width / force_unit : 0};
+      at = relax(now, held);
+    } else {
+      const Fabric moved = deformed(now, course ? start.width * (1 + step) : now.width,
+                                    wale ? start.height * (1 + step) : now.height,
+                                    shear ? start.skew + step * start.height : now.skew);
+      at = relax(moved, held);
+    }
     if (!add_point()) result.stopped = true;
   }
   result.stopped = result.stopped || at.stopped;

@@ -1,5 +1,6 @@
 // Stretch test of a periodic cell or of a held piece: its width, its height, both or its shear are prescribed
-// step by step, the cloth comes to rest at each, and the forces that the frame carries are read off.
+// step by step, or the forces on them are; the cloth comes to rest at each, and sizes and the forces that the
+// frame carries are read off.
 #pragma once
 #include <functional>
 #include <vector>
@@ -9,11 +10,14 @@
 namespace loopwright {
 
 enum class StretchDirection { course, wale, both, shear };
+enum class StretchControl { strain, load };
 
 struct StretchTest {
   StretchDirection direction = StretchDirection::course;  // course: the width grows, wale: the height
-  // Strains to go to, in order, as shares of the size at the start (shear: skew over height); each is reached
-  // in steps of at most `largest_step`, and every step is a point of the result.
+  StretchControl control = StretchControl::strain;
+  // Where to go, in order; each is reached in steps of at most `largest_step`, and every step is a point of
+  // the result. Strains: shares of the size at the start (shear: skew over height). Loads: forces per length
+  // of the relaxed cloth, N/m, that stay as they are while the cloth yields to them.
   std::vector<double> turning_points;
   double largest_step = 0.02;
   bool free_across = true;  // course and wale: the other size follows, so that its force is zero
@@ -40,7 +44,8 @@ struct StretchResult {
 // `relaxed`: at rest with `options`, with the history of friction there, which is kept through the test, so
 // that loading and unloading differ. `on_point` is called after every point; false stops the test. Throws
 // std::invalid_argument if the material does not say its reference_bend_N_m2 (forces have no unit then), and
-// for strains that cannot be: not finite, -0.9 or less, above 5, no turning point.
+// for strains that cannot be (not finite, -0.9 or less, above 5), loads that are not finite, no turning
+// point.
 StretchResult stretch(const RelaxResult& relaxed, const RelaxOptions& options, const StretchTest& test,
                       const std::function<bool(const StretchPoint&)>& on_point = {});
 

@@ -91,6 +91,46 @@ TEST(Stretch, PlainClothIsSofterAlongItsCourses) {
   EXPECT_GT(both.course_force, course.course_force);
 }
 
+// A load gives the strain at which a strained test reads that force, and is borne exactly.
+TEST(Stretch, LoadAndStrainControlMeet) {
+  const Cell cell = plain_cell(0);
+  for (const StretchDirection direction :
+       {StretchDirection::course, StretchDirection::wale, StretchDirection::both, StretchDirection::shear}) {
+    const StretchPoint strained =
+        stretch(cell.relaxed, cell.options, pulled(direction, {0.08})).points.back();
+    StretchTest test = pulled(direction, {force_of(strained, direction)});
+    if (direction == StretchDirection::both) test.turning_points = {strained.course_force};
+    test.control = StretchControl::load;
+    test.largest_step = test.turning_points[0] / 3.5;
+    const StretchResult result = stretch(cell.relaxed, cell.options, test);
+    ASSERT_EQ(result.points.size(), 5U);
+    const StretchPoint& end = result.points.back();
+    EXPECT_TRUE(end.converged);
+    EXPECT_EQ(end.pass_throughs, 0);
+    if (direction == StretchDirection::both) {
+      EXPECT_NEAR(end.course_force, test.turning_points[0], 1e-3 * test.turning_points[0]);
+      EXPECT_NEAR(end.wale_force, test.turning_points[0], 1e-3 * test.turning_points[0]);
+    } else {
+      EXPECT_NEAR(force_of(end, direction), test.turning_points[0], 1e-3 * test.turning_points[0]);
+      EXPECT_NEAR(strain_of(end, direction), 0.08, 2e-3);
+    }
+  }
+}
+
+// A cloth under a load that stays does not creep: sought again and again, rest is where it was.
+TEST(Stretch, ALoadedClothDoesNotCreep) {
+  const Cell cell = plain_cell(0.25);
+  StretchTest test = pulled(StretchDirection::course, {2, 2, 2, 2, 2});
+  test.control = StretchControl::load;
+  test.largest_step = 0.5;
+  const StretchResult result = stretch(cell.relaxed, cell.options, test);
+  ASSERT_EQ(result.points.size(), 9U);
+  EXPECT_GT(result.points[4].course_strain, 0.002);
+  for (std::size_t k = 5; k < 9; ++k)
+    EXPECT_NEAR(result.points[k].course_strain, result.points[4].course_strain,
+                0.01 * result.points[4].course_strain);
+}
+
 TEST(Stretch, FrictionMakesALoopAndDoesNotCreep) {
   for (const double friction : {0.0, 0.25}) {
     const Cell cell = plain_cell(friction);
@@ -128,6 +168,12 @@ TEST(Stretch, WhatCannotBeIsRefused) {
     EXPECT_THROW(stretch(cell.relaxed, cell.options, pulled(StretchDirection::wale, to)),
                  std::invalid_argument);
   StretchTest still = pulled(StretchDirection::course, {0.1});
+  StretchTest endless = pulled(StretchDirection::course, {1});
+  endless.largest_step = 1e-6;
+  EXPECT_THROW(stretch(cell.relaxed, cell.options, endless), std::invalid_argument);
+  StretchTest heavy = pulled(StretchDirection::course, {nan});
+  heavy.control = StretchControl::load;
+  EXPECT_THROW(stretch(cell.relaxed, cell.options, heavy), std::invalid_argument);
   still.largest_step = 0;
   EXPECT_THROW(stretch(cell.relaxed, cell.options, still), std::invalid_argument);
   cell.options.model.material.reference_bend_N_m2 = 0;

@@ -11,13 +11,13 @@ struct MachineModel {
   // Yarn in a loop: what the stitch cam draws, and what it takes to go from one bed to the other (half of it
   // at either end of a loop). A loop that is moved has no more yarn than others, a loop on an empty needle no
   // less.
-  double loop_length_mm = 6.76, bed_change_mm = 1.40;
+  double loop_length_mm = 6.83, bed_change_mm = 1.40;
   double take_down_N = 0.02;  // of a wale
   // Laid flat: room for the centrelines of jersey (one layer of stitches, and a diameter for yarn that
   // crosses it) and of cloth whose stitches show both faces.
-  double one_layer_mm = 1.0, two_layers_mm = 1.85;
+  double one_layer_mm = 1.0, two_layers_mm = 1.90;
   // Yarn.
-  double diameter_mm = 0.39, bend_stiffness_mN_mm2 = 12.7, friction = 0.25, linear_density_tex = 70.7;
+  double diameter_mm = 0.405, bend_stiffness_mN_mm2 = 12.7, friction = 0.25, linear_density_tex = 70.0;
   // Of the stretched swatches, 608 g: along the courses, borne by all of them, and along the wales.
   double course_load_N = 5.96, wale_load_N = 0;
 };

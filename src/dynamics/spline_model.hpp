@@ -34,7 +34,7 @@ struct SplineYarn {
   // Mean only: share of the stiffness against uneven speed of the parameter inside a segment. At rest it may
   // be 0, as in src/mechanics; in motion what costs nothing drifts until the yarn runs backward. 1 would be
   // the local strain, which makes bends too stiff (membrane locking).
-  double evenness = 0.005;
+  double evenness = 0.05;
   double bend_stiffness = 0;
   double diameter = 1;
   // What follows is one per segment; at Gauss points of mechanics/energies/energy.hpp where there are four.

@@ -92,7 +92,7 @@ struct AnimateCommand {
   std::string model = "loop", style = "structure";
   std::string binding = "contact";  // yarn model: barycentric, sliding, contact
   std::string size;                 // yarn model: wales x courses; empty: as the file says
-  double stretch = 0;  // yarn model: share by which the sides are pulled apart
+  double stretch = 0;               // yarn model: share by which the sides are pulled apart
   LoopRequest loop;
   PictureRequest picture;
   int frames = 48, threads = 0;

@@ -37,6 +37,7 @@ SplineModel spline_model(const Fabric& fabric, const YarnMaterial& material, dou
     spline.stretch_stiffness = material.stretch_stiffness * section;
     spline.bend_stiffness = material.bend_stiffness * section;
     spline.diameter = yarn.diameter;
+    spline.evenness = 0.005;  // bends are tight in cloth that is pulled, and it is never long in free flight
     set_rest_shape(spline, yarn.control_points, set, StretchLaw::mean);
     if (!drawn_lengths)
       spline.rest_length.assign(static_cast<std::size_t>(spline.segments()), yarn.segment_rest_length);

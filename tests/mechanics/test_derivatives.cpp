@@ -345,6 +345,22 @@ TEST(AssemblyDerivatives, HeldPieceBetweenPlates) {
   check_line(line);
 }
 
+// Loads on control points, free and held, of a piece and of a cell whose images carry them too.
+TEST(AssemblyDerivatives, LoadsOnControlPoints) {
+  for (const char* edges : {"periodic", "held"}) {
+    SCOPED_TRACE(edges);
+    const Fabric fabric =
+        relax(knitted("g", edges, edges[0] == 'h' ? "3 wales x 3 courses" : ""), frictionless()).fabric;
+    ModelOptions options = swollen();
+    Generator random(13);
+    const auto nodes = static_cast<std::size_t>(build_yarn_model(fabric, options).nodes);
+    for (std::size_t i = 0; i < nodes; ++i)
+      options.point_loads.push_back(
+          {uniform(random, -0.1, 0.1), uniform(random, -0.1, 0.1), uniform(random, -0.1, 0.1)});
+    check_line(line_through(disturbed(fabric, 0.02), options, 3));
+  }
+}
+
 // With history: the cloth is moved once and that motion accepted, so contacts carry slip, some slide and some
 // stick.
 TEST(AssemblyDerivatives, FrictionCountedFromTheLastHessian) {

@@ -197,7 +197,10 @@ void find_segment_pairs(const YarnModel& model, const YarnState& state, const Sa
             if (model.yarn_of_segment[static_cast<std::size_t>(a)] ==
                     model.yarn_of_segment[static_cast<std::size_t>(other.segment)] &&
                 turns_ahead(yarn, other.m, other.n, turns)) {
-              const int ahead = other.segment - a + turns * yarn.segments;
+              int ahead = other.segment - a + turns * yarn.segments;
+              // a ring: its end lies behind its beginning
+              const bool closed = yarn.periodic && yarn.shift == std::array<int, 2>{0, 0};
+              if (closed && 2 * ahead > yarn.segments) ahead -= yarn.segments;
               const double excluded = model.excluded * yarn.diameter;
               if ((std::abs(ahead) + 1) * yarn.rest_length <= excluded) continue;
               pair.same_yarn = (std::abs(ahead) - 1) * yarn.rest_length < excluded;

@@ -81,8 +81,9 @@ const std::vector<Reference>& references() {
   return all;
 }
 
-void print_curves() {
-  const RelaxOptions options = hard_yarn(0);
+void print_curves(double sample_spacing, bool draw) {
+  RelaxOptions options = hard_yarn(0);
+  options.model.sample_spacing = sample_spacing;
   for (const StretchDirection direction : {StretchDirection::course, StretchDirection::wale}) {
     const bool course = direction == StretchDirection::course;
     Plot plot{course ? "Stretched along the courses, l/d 17, no friction"
@@ -105,8 +106,9 @@ void print_curves() {
         unsettled += !p.converged;
         return true;
       });
-      std::printf("%s along the %s, frictionless, l/d 17 (%d of %zu points not at rest)\n", r.name,
-                  course ? "courses" : "wales", unsettled, curve.strain.size());
+      std::printf(
+          "%s along the %s, frictionless, l/d 17, samples every %.2f d (%d of %zu points not at rest)\n",
+          r.name, course ? "courses" : "wales", sample_spacing, unsettled, curve.strain.size());
       std::printf("  strain  stress l^3/B  (ref)      off   across   (ref)\n");
       for (std::size_t k = 0; k < r.strain.size(); ++k) {
         const double s = curve.at(curve.strain, curve.stress, r.strain[k]);
@@ -119,9 +121,50 @@ void print_curves() {
       plot.curves.push_back({r.name, curve.strain, curve.stress, false});
       plot.curves.push_back({std::string(r.name) + ", reference", r.strain, r.stress, true});
     }
-    write_plot_svg(course ? "docs/pictures/validation_courses.svg" : "docs/pictures/validation_wales.svg",
-                   plot);
+    if (draw)
+      write_plot_svg(course ? "docs/pictures/validation_courses.svg" : "docs/pictures/validation_wales.svg",
+                     plot);
   }
+}
+
+// How even a curve is: largest departure of the force from a parabola through five neighbouring points.
+double unevenness(const Curve& curve) {
+  constexpr double weights[] = {-3 / 35.0, 12 / 35.0, 17 / 35.0, 12 / 35.0, -3 / 35.0};
+  double sum = 0;
+  int counted = 0;
+  for (std::size_t k = 2; k + 2 < curve.stress.size(); ++k) {
+    double smooth = 0;
+    for (std::size_t i = 0; i < 5; ++i) smooth += weights[i] * curve.stress[k + i - 2];
+    if (curve.strain[k] < 0.1) continue;
+    sum += std::pow(curve.stress[k] / smooth - 1, 2);
+    ++counted;
+  }
+  return std::sqrt(sum / counted);
+}
+
+void print_corrugation() {
+  std::printf(
+      "what the spacing of contact samples does to a stretch curve along the courses, frictionless, l/d 17\n"
+      "  (stress l^3/B at strains, and r.m.s. departure from parabolas through five points)\n");
+  for (const char* courses : {"g", "ge"})
+    for (const double segments : {12.0, 16.0, 24.0, 48.0})
+      for (const double apart : {0.18, 0.12, 0.06}) {
+        RelaxOptions options = hard_yarn(0);
+        options.model.sample_spacing = apart;
+        const RelaxResult rest = rested(cell_of(courses, 17, 1, segments), options);
+        StretchTest test;
+        test.turning_points = {0.42};
+        Curve curve;
+        for (const StretchPoint& p : stretch(rest, options, test).points)
+          curve.add(p.course_strain,
+                    p.course_force * std::pow(17e-3, 3) / options.model.material.reference_bend_N_m2, 0);
+        std::printf("  %-5s %2.0f segments, samples every %.2f d:", courses[1] ? "rib" : "plain", segments,
+                    apart);
+        for (const double e : {0.1, 0.2, 0.3, 0.4})
+          std::printf("  %6.1f", curve.at(curve.strain, curve.stress, e));
+        std::printf("   %.2f %%\n", 100 * unevenness(curve));
+      }
+  std::printf("\n");
 }
 
 void print_scaling() {
@@ -310,7 +353,9 @@ void print_areal_weight() {
 int main() {
   using namespace loopwright;
   print_tightness();
-  print_curves();
+  print_curves(0.18, false);
+  print_curves(0.12, true);
+  print_corrugation();
   print_scaling();
   print_shaken();
   print_simulated_acrylic();

@@ -273,16 +273,22 @@ constexpr double tilt_share = 0.5;
 void tilt_crossings(const YarnGraph& graph, Nodes& nodes, Layout& layout) {
   const std::size_t n = graph.loops.size();
   struct Steps {
-    Vec3 below, above;
+    Vec3 below, above, tucks_below;
   };
   std::vector<Steps> at_node(2 * n);
   for (std::size_t i = 0; i < n; ++i) {
     const LoopId id(i);
-    if (graph.loops[i].kind == LoopKind::tuck) continue;
     const Vec3 step = layout.upper[i] - layout.lower[i];
+    Steps& high = at_node[nodes.upper(id)];
+    if (graph.loops[i].kind == LoopKind::tuck) {
+      high.tucks_below += layout.upper_turn(id).transposed(step);
+      continue;
+    }
+    high.below += layout.upper_turn(id).transposed(step);
     at_node[nodes.lower(id)].above += layout.lower_turn(id).transposed(step);
-    at_node[nodes.upper(id)].below += layout.upper_turn(id).transposed(step);
   }
+  for (Steps& steps : at_node)
+    if (norm(steps.below) == 0) steps.below = steps.tucks_below;
   const auto tilt = [](const Vec3& step) {
     const double along = std::hypot(step.x, step.y);
     return along > 0 || step.z != 0 ? tilt_share * std::atan2(step.z, along) : 0;

@@ -146,7 +146,7 @@ class LoopPlacer {
       } else {
         leg(0.3, (lower ? far_end : near_end) * width, sign.early_rise, shingle);
       }
-      if (!over_head) leg(0.5, 2 * width, 1, 0);
+      if (!over_head) leg(0.5, (layout_.is_flat() ? 2 : 1) * width, 1, 0);
       leg(0.7, (lower ? near_end : far_end) * width, 1, -shingle);
     } else if (graph_.loop(id).head_count > 1) {
       const bool room = own.high.y - own.low.y > 5.5 * sy_;

@@ -59,7 +59,7 @@ Plot plot_of(const StretchCommand& command, const StretchResult& result) {
                           : command.direction == "shear" ? p.shear
                                                          : p.course_strain;
     course.x.push_back(strain), course.y.push_back(p.course_force);
-    wale.x.push_back(strain), wale.y.push_back(p.wale_force);
+    wale.x.push_back(command.direction == "both" ? p.wale_strain : strain), wale.y.push_back(p.wale_force);
     shear.x.push_back(strain), shear.y.push_back(p.shear_force);
   }
   if (command.direction == "both") plot.title = command.file + ", both ways";

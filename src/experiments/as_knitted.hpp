@@ -1,5 +1,5 @@
 // What a fabric is like when it is measured depends, with friction, on what it went through: it was knitted
-// at the pitch of the needles, under take-down, then let go and laid flat.
+// at the pitch of the needles, under take-down, then let go; and it is measured flat.
 #pragma once
 #include "mechanics/relax.hpp"
 
@@ -8,8 +8,8 @@ namespace loopwright {
 struct KnittingHistory {
   double machine_width_mm = 0;  // of the fabric (cell, piece in a frame) on the needles
   double take_down_N = 0;       // pull along the wales on that width, while it is on the needles
-  // Laid flat: between plates that leave the outermost centrelines so far apart; 0: not at all. A jersey
-  // rolls up if it may, and no ruler is laid to cloth like that.
+  // Kept flat, on the needles and after: between plates that leave the outermost centrelines so far apart; 0:
+  // not at all. A jersey rolls up if it may, and no ruler is laid to cloth like that.
   double flat_gap_mm = 0;
 };
 

@@ -48,6 +48,7 @@ std::string description(const YarnGraph& graph, const std::map<int, int>& rows, 
     add(quarters(graph.loop(other).slot - loop.slot));
     add(rows.at(graph.loop(other).pass) - row);
   };
+  add(graph.yarns[loop.yarn.position()].carrier.value);
   add(quarters(loop.slot - std::floor(loop.slot)));
   add(static_cast<int>(loop.kind));
   add(static_cast<int>(loop.side));
@@ -182,7 +183,7 @@ std::optional<FoundRepeat> repeat_in(const StitchTable& table, int least_seen) {
 
   // Courses: nearly all of them. The first and last pass of a region border on other stitches, and patterns
   // often have a plain course or two there.
-  constexpr double rows_share = 0.85, longer_share = 0.3;
+  constexpr double rows_share = 0.85, nearly_all = 0.9, longer_share = 0.3;
   const auto same_rows = [&table](int a, int b) { return rows_alike(table, a, b); };
   Stretch courses;
   for (int period = 1; period < table.rows() && courses.period == 0; ++period) {
@@ -192,19 +193,23 @@ std::optional<FoundRepeat> repeat_in(const StitchTable& table, int least_seen) {
   }
   if (courses.period == 0) return std::nullopt;
 
-  // Wales, in the passes that repeat: the widest part, then the smallest period.
+  // Wales, in the passes that repeat.
   StitchTable part = table;
   part.passes.resize(static_cast<std::size_t>(courses.size));
   part.stitches.assign(table.stitches.begin() + courses.first * table.columns,
                        table.stitches.begin() + (courses.first + courses.size) * table.columns);
   const auto same_columns = [&part](int a, int b) { return columns_alike(part, a, b); };
+  // A period that holds nearly everywhere is the smallest of these; else a longer one must cover clearly more
+  // than a shorter one does.
   Stretch wales;
   for (int period = 1; period < table.columns; ++period) {
     const Stretch run = longest_run(table.columns, period, same_columns);
-    if (run.size >= 2 * period || run.size >= period + least_seen) {
-      // A longer period is better only if it covers clearly more than what a shorter one does.
-      if (wales.period == 0 || run.size > wales.size + longer_share * table.columns) wales = run;
+    if (run.size < 2 * period && run.size < period + least_seen) continue;
+    if (run.size >= nearly_all * table.columns) {
+      wales = run;
+      break;
     }
+    if (wales.period == 0 || run.size > wales.size + longer_share * table.columns) wales = run;
   }
   if (wales.period == 0) return std::nullopt;
 
@@ -223,6 +228,9 @@ std::optional<FoundRepeat> repeat_in(const StitchTable& table, int least_seen) {
     found.range.repeat_starts.push_back(starts[static_cast<std::size_t>(start)]);
   }
   found.range.repeat_starts.push_back(std::numeric_limits<int>::max());
+  // The cell's height is its distance from the repeat before or after it.
+  if (first - courses.period < 0 && first + 2 * courses.period > static_cast<int>(starts.size()))
+    return std::nullopt;
   return found;
 }
 

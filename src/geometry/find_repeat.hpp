@@ -17,10 +17,11 @@ struct FoundRepeat {
 };
 
 // Looks at the selected loops, which should fill a rectangle of needles and passes. Two loops are alike if
-// they were formed alike, on the same bed, lie in the same place of their stack, were drawn through loops at
-// the same relative places and cross the legs of others in the same order; which way the yarn went does not
-// count. Along the wales the whole region must repeat (after at least `least_seen` passes of a second
-// repeat), along the courses its widest part. Nothing where there is no such repeat.
+// they were formed alike, of the same yarn, on the same bed, lie in the same place of their stack, were drawn
+// through loops at the same relative places and cross the legs of others in the same order; which way the
+// yarn went does not count. Along the wales at least 85 % of the region's passes must repeat (after at least
+// `least_seen` passes of a second repeat), along the courses its widest part. Nothing where there is no such
+// repeat.
 std::optional<FoundRepeat> find_repeat(const YarnGraph& graph, const LoopSelection& region,
                                        int least_seen = 4);
 // The same for a whole piece, whose borders are of other stitches: looked for in its middle nine tenths, two

@@ -265,7 +265,65 @@ void fit_templates(const YarnGraph& graph, const GeometryOptions& options, Nodes
   }
 }
 
+// Where legs go through the thickness of the cloth (garter at rest, folds), a crossing that lies in the
+// cloth's plane would have the leg go straight down through the foot that it crosses. Half way between the
+// plane and the leg, yarns pass each other on both sides of the binding point.
+constexpr double tilt_share = 0.5;
+
+void tilt_crossings(const YarnGraph& graph, Nodes& nodes, Layout& layout) {
+  const std::size_t n = graph.loops.size();
+  struct Steps {
+    Vec3 below, above, tucks_below;
+  };
+  std::vector<Steps> at_node(2 * n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const LoopId id(i);
+    const Vec3 step = layout.upper[i] - layout.lower[i];
+    Steps& high = at_node[nodes.upper(id)];
+    if (graph.loops[i].kind == LoopKind::tuck) {
+      high.tucks_below += layout.upper_turn(id).transposed(step);
+      continue;
+    }
+    high.below += layout.upper_turn(id).transposed(step);
+    at_node[nodes.lower(id)].above += layout.lower_turn(id).transposed(step);
+  }
+  for (Steps& steps : at_node)
+    if (norm(steps.below) == 0) steps.below = steps.tucks_below;
+  const auto tilt = [](const Vec3& step) {
+    const double along = std::hypot(step.x, step.y);
+    return along > 0 || step.z != 0 ? tilt_share * std::atan2(step.z, along) : 0;
+  };
+  layout.tilt_lower.clear(), layout.tilt_upper.clear();
+  for (std::size_t i = 0; i < n; ++i) {
+    const Steps &low = at_node[nodes.lower(LoopId(i))], &high = at_node[nodes.upper(LoopId(i))];
+    layout.tilt_lower.push_back({tilt(low.below), tilt(low.above)});
+    layout.tilt_upper.push_back({tilt(high.below), tilt(high.above)});
+  }
+}
+
+// Turned about x by the tilt below or above; between them where it is less than `reach` away.
+Vec3 tilted(const CrossingTilt& tilt, const Vec3& offset, double reach) {
+  const double share = std::clamp(0.5 + 0.5 * offset.y / reach, 0.0, 1.0);
+  // Sinkers hang farther down among the legs and are tilted more.
+  const double more = offset.y < 0 ? std::clamp(-offset.y / reach, 1.0, 1.5) : 1;
+  const double angle = (tilt.below + (tilt.above - tilt.below) * share) * more;
+  const double c = std::cos(angle), s = std::sin(angle);
+  return {offset.x, c * offset.y - s * offset.z, s * offset.y + c * offset.z};
+}
+
 }  // namespace
+
+Vec3 Layout::from_lower(LoopId id, const Vec3& offset, double reach) const {
+  const std::size_t i = id.position();
+  const Vec3 here = tilt_lower.empty() ? offset : tilted(tilt_lower[i], offset, reach);
+  return lower[i] + lower_turn(id) * here;
+}
+
+Vec3 Layout::from_upper(LoopId id, const Vec3& offset, double reach) const {
+  const std::size_t i = id.position();
+  const Vec3 here = tilt_upper.empty() ? offset : tilted(tilt_upper[i], offset, reach);
+  return upper[i] + upper_turn(id) * here;
+}
 
 Rotation Layout::turn(LoopId id) const {
   if (is_flat()) return {};
@@ -350,6 +408,7 @@ Layout moved_layout(const YarnGraph& graph, const GeometryOptions& options, cons
   lower_tucks(graph, options, layout);
   Nodes nodes = binding_nodes(graph);
   fit_templates(graph, options, nodes, layout);
+  tilt_crossings(graph, nodes, layout);
   return layout;
 }
 

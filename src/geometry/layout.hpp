@@ -12,6 +12,12 @@
 
 namespace loopwright {
 
+// How steeply legs rise out of the cloth at a binding point: the angles, in radians, by which a crossing is
+// turned about the course there, below the point (as the heads' legs come) and above it (as the feet's go).
+struct CrossingTilt {
+  double below = 0, above = 0;
+};
+
 struct Layout {
   std::vector<Vec3> lower, upper;  // per loop: O and P, in d. P of a parent equals O of its children
   std::vector<double> y_scale_lower,
@@ -24,12 +30,17 @@ struct Layout {
   // How the cloth is turned at O and P: from x along the course, y along the wale, z toward the front bed to
   // where these point. Empty: nothing is turned, as in the first geometry.
   std::vector<Rotation> turn_lower, turn_upper;
+  std::vector<CrossingTilt> tilt_lower, tilt_upper;  // per loop, at O and P; empty: nothing is tilted
   std::vector<std::int8_t> wall;  // per loop: of a tube's front (1) or rear (-1) wall; empty: not known
 
   bool is_flat() const { return turn_lower.empty(); }
   Rotation lower_turn(LoopId id) const { return is_flat() ? Rotation{} : turn_lower[id.position()]; }
   Rotation upper_turn(LoopId id) const { return is_flat() ? Rotation{} : turn_upper[id.position()]; }
   Rotation turn(LoopId id) const;  // of the loop as a whole
+  // An offset from O or P, given in the directions of the cloth there, as it is in space: tilted and turned.
+  // `reach`: how far above and below the point the tilt is whole, in the offset's unit.
+  Vec3 from_lower(LoopId id, const Vec3& offset, double reach) const;
+  Vec3 from_upper(LoopId id, const Vec3& offset, double reach) const;
   // The way from O to P as the loop sees it: along its course, along its wale, to the front.
   Vec3 step(LoopId id) const { return turn(id).transposed(upper[id.position()] - lower[id.position()]); }
   bool in_one_wall(LoopId a, LoopId b) const {

@@ -106,8 +106,8 @@ class SinkerPlacer {
     // Where the foot reaches behind several heads, the sinker does not come back in between them.
     const double foot = sign.s * sign.foot + 0.6;
     const double z = sign.s * std::min(sign.s * sign.foot_layer - 1.5, foot);
-    return layout.lower[i] +
-           layout.lower_turn(id) * Vec3{4 * side * sx_, -3 * sy_ * layout.y_scale_lower[i], z * r_};
+    const double high = sy_ * layout.y_scale_lower[i];
+    return layout.from_lower(id, {4 * side * sx_, -3 * high, z * r_}, 1.5 * high);
   }
 
   // How far the yarn goes along the course; the whole distance where the two loops face different ways, as
@@ -121,7 +121,11 @@ class SinkerPlacer {
   }
 
   double extra_length(const Loop& from, const Loop& to) const {
-    const double missed = std::max(0.0, std::abs(to.slot - from.slot) - 1);
+    double gone = std::abs(to.slot - from.slot);
+    // Where the yarn turns and the piece was moved on its needles before the next row (decreases all along
+    // it), the loop that the yarn leaves was moved as well.
+    if (from.direction != to.direction) gone = std::min(gone, std::abs(to.slot - from.head_slot));
+    const double missed = std::max(0.0, gone - 1);
     const double change = is_front(from.bed) == is_front(to.bed) ? 0 : options_.bed_change;
     return missed * options_.needle_pitch * (1 + options_.float_slack) + change;
   }

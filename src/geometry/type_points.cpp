@@ -48,13 +48,13 @@ class LoopPlacer {
   // O or P plus an offset in r.
   Vec3 at_lower(LoopId id, double x, double y, double z) const {
     const std::size_t i = id.position();
-    return layout_.lower[i] + layout_.lower_turn(id) * Vec3{x * sx_ * layout_.x_scale_lower[i],
-                                                            y * sy_ * layout_.y_scale_lower[i], z * r_};
+    const double high = sy_ * layout_.y_scale_lower[i];
+    return layout_.from_lower(id, {x * sx_ * layout_.x_scale_lower[i], y * high, z * r_}, 1.5 * high);
   }
   Vec3 at_upper(LoopId id, double x, double y, double z) const {
     const std::size_t i = id.position();
-    return layout_.upper[i] + layout_.upper_turn(id) * Vec3{x * sx_ * layout_.x_scale_upper[i],
-                                                            y * sy_ * layout_.y_scale_upper[i], z * r_};
+    const double high = sy_ * layout_.y_scale_upper[i];
+    return layout_.from_upper(id, {x * sx_ * layout_.x_scale_upper[i], y * high, z * r_}, 1.5 * high);
   }
   // O and P as the loop itself sees them.
   struct Ends {
@@ -75,6 +75,13 @@ class LoopPlacer {
     along = norm(along) > 1e-9 ? normalized(along) : Vec3{0, 1, 0};
     const Vec3 outward{along.y, -along.x, 0};
     return loop.low + loop.step() * share + outward * (across * sx_);
+  }
+  // At right angles to the way from O to P, to the front.
+  static Vec3 normal(const Ends& loop) {
+    const Vec3 step = loop.step();
+    const double along = std::hypot(step.x, step.y), length = norm(step);
+    if (!(along > 1e-9 * length)) return {0, 0, 1};
+    return Vec3{-step.x / along * step.z, -step.y / along * step.z, along} / length;
   }
   double leaning(const Ends& loop) const { return loop.step().x / (8 * sx_); }  // in wales, to the right
   static double steepness(const Ends& loop) {                                   // 1 upright, 0 on its side
@@ -108,9 +115,14 @@ class LoopPlacer {
     // children find it (c, at P).
     const auto leg = [&](double share, double across, double rise, double more) {
       const double layer = std::abs(foot) > 0 ? foot + (head - foot) * rise : head;
+      // in cloth that was moved leaning legs keep farther from what crosses them
+      const double bow = !layout_.is_flat() && std::abs(leaning(own)) > 0.4 ? 2.5 : 1.5;
+      const double out = (bow * (s * (1 - rise) + c * rise) + layer + sign.leg_offset + more) * r_;
       Vec3 place = on_leg(own, share, side * across);
-      place.z = own.low.z * (1 - rise) + own.high.z * rise +
-                (1.5 * (s * (1 - rise) + c * rise) + layer + sign.leg_offset + more) * r_;
+      if (layout_.is_flat())
+        place.z = own.low.z * (1 - rise) + own.high.z * rise + out;
+      else
+        place += normal(own) * out;
       points.push_back(point(id, LoopPart::leg, own.in_space(place)));
     };
     // A head that was moved or that lies in a stack meets its children's sinkers and the other legs of the
@@ -134,7 +146,7 @@ class LoopPlacer {
       } else {
         leg(0.3, (lower ? far_end : near_end) * width, sign.early_rise, shingle);
       }
-      if (!over_head) leg(0.5, 2 * width, 1, 0);
+      if (!over_head) leg(0.5, (layout_.is_flat() ? 2 : 1) * width, 1, 0);
       leg(0.7, (lower ? near_end : far_end) * width, 1, -shingle);
     } else if (graph_.loop(id).head_count > 1) {
       const bool room = own.high.y - own.low.y > 5.5 * sy_;

@@ -159,17 +159,18 @@ class NetBuilder {
         const bool turns = first.direction != second.direction;
         // Round the edge of a tube the face is the same, seen from outside, where it differs from front to
         // rear.
-        const bool over = walls_[from.position()] * walls_[to.position()] < 0;
+        const bool over = turns && walls_[from.position()] * walls_[to.position()] < 0;
         const bool odd =
             over ? first.side == second.side : !turns && first.side != second.side && wales < 1.5;
         const Connection& connection = odd ? table_.weft_odd : table_.weft_even;
         Vec3 rest = rest_of(connection, a, b, step < 0 ? -wales : wales, 0);
-        if (turns && std::abs(step) < 0.5) {
+        if (turns && !over && std::abs(step) < 0.5) {
           // straight over to the other bed, or up to the next row
           const Vec3 way = start_[at(b)] - start_[at(a)];
           rest = norm(way) > 0 ? normalized(way) * norm(rest) : rest;
         }
         weft_after_[from.position()] = static_cast<std::int32_t>(net_.springs.size());
+        if (over) over_edge_.insert(weft_after_[from.position()]);
         net_.springs.push_back(
             {a, b, own_stiffness(connection, connection.coupling) / wales, rest, SpringKind::weft});
       }
@@ -223,9 +224,14 @@ class NetBuilder {
       // straight on through the mass they share; parts of an odd pair undo each other's z
       if (a.b != b.a || a.a == b.b) return;
       Vec3 rest = a.rest + b.rest;
-      const bool rounds = a.rest.x * b.rest.x < 0;  // round the edge of a tube: as long as flat cloth
-      if (rounds) rest = {norm(a.rest) + norm(b.rest), 0, 0};
-      const double share = a.rest.z != 0 && b.rest.z != 0 ? options_.fold : options_.bend;
+      const bool both_odd = a.rest.z != 0 && b.rest.z != 0;
+      if (over_edge_.count(first) + over_edge_.count(second) > 0) {
+        // round the edge of a tube: as far as in a wall
+        rest = {std::abs(a.rest.x) + std::abs(b.rest.x), 0, both_odd ? 0 : a.rest.z + b.rest.z};
+      } else if (a.kind == SpringKind::weft && a.rest.x * b.rest.x < 0) {
+        return;  // there and back
+      }
+      const double share = both_odd ? options_.fold : options_.bend;
       if (share > 0) add_if_new(a.a, b.b, share * std::min(a.stiffness, b.stiffness), rest, SpringKind::bend);
     };
     for (const GraphYarn& yarn : graph_.yarns)
@@ -250,6 +256,7 @@ class NetBuilder {
   double length_, stiffness_, slots_per_wale_;
   MassSpringNet net_;
   std::vector<std::int32_t> warp_of_, weft_after_;  // [loop] spring
+  std::set<std::int32_t> over_edge_;                // weft springs from wall to wall of a tube
   std::set<std::pair<std::int32_t, std::int32_t>> extra_;
 };
 
@@ -388,7 +395,7 @@ LoopModel build_loop_model(const YarnGraph& graph, const Program& program, const
   YarnCurves curves = build_yarn_curves(graph, geometry);
   CorrelationMap map(graph, points, start, curves);
   const LoopYarn yarn = loop_yarn(program, geometry);
-  const std::vector<std::int8_t> walls = tube_walls(graph, rounds_of(graph, points));
+  const std::vector<std::int8_t> walls = tube_walls(graph, runs_of(graph, points), rounds_of(graph, points));
   MassSpringNet net = NetBuilder(graph, options, yarn, points, start, walls).build();
   // (8): the fabric's mass is shared by the binding points
   const double whole = loop_mass(yarn) * static_cast<double>(graph.loops.size());

@@ -15,8 +15,8 @@ namespace {
 
 std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
-// A flat tube laid round a cylinder of its width: the front wall in front, the rest behind. Where less than
-// half the piece is knitted in rounds it is no tube: empty.
+// A flat tube laid round a cylinder of its width: the front wall in front, the rear one behind. Where less
+// than half the piece is knitted in rounds it is no tube: empty.
 std::vector<Vec3> round_start(const YarnGraph& graph, const LoopModel& model) {
   std::size_t in_rounds = 0;
   for (const Round& round : rounds_of(graph, model.points))
@@ -25,15 +25,13 @@ std::vector<Vec3> round_start(const YarnGraph& graph, const LoopModel& model) {
   double left = model.start[0].x, right = left;
   for (const Vec3& p : model.start) left = std::min(left, p.x), right = std::max(right, p.x);
   const double wide = right - left + model.geometry.wale_pitch, radius = wide / std::numbers::pi;
-  std::vector<int> wall;  // what is in neither by its bed
-  for (std::size_t i = 0; i < model.wall.size(); ++i)
-    wall.push_back(model.wall[i] != 0 ? model.wall[i] : is_front(model.points.points[i].bed) ? 1 : -1);
   std::vector<Vec3> places = model.start;
   for (std::size_t i = 0; i < places.size(); ++i) {
+    if (model.wall[i] == 0) continue;  // flat cloth before or after the tube
     const double share = (places[i].x - left + model.geometry.wale_pitch / 2) / wide;
     const double angle = std::numbers::pi * (1 - share);
     places[i].x = (left + right) / 2 + radius * std::cos(angle);
-    places[i].z = wall[i] * radius * std::sin(angle);
+    places[i].z = model.wall[i] * radius * std::sin(angle);
   }
   return places;
 }
@@ -49,7 +47,10 @@ void turn_edges(const YarnGraph& graph, const LoopModel& model, const std::vecto
     const std::size_t order = static_cast<std::size_t>(loop.order);
     if (order == 0 || order + 1 >= yarn.size() || loop.parents.empty()) continue;
     const std::size_t before = lower(yarn[order - 1]), after = lower(yarn[order + 1]), own = lower(LoopId(k));
-    const bool over = model.wall[own] * model.wall[before] < 0 || model.wall[own] * model.wall[after] < 0;
+    const auto is_over = [&](LoopId next, std::size_t point) {
+      return graph.loop(next).direction != loop.direction && model.wall[own] * model.wall[point] < 0;
+    };
+    const bool over = is_over(yarn[order - 1], before) || is_over(yarn[order + 1], after);
     if (!over) continue;
     Vec3 course = places[after] - places[before];
     if (loop.direction == Direction::left) course = -course;
@@ -140,8 +141,7 @@ std::vector<Vec3> folded_sheet(const YarnGraph& graph, const LoopModel& model, c
   MassSpringNet sheet = model.net;
   for (Spring& spring : sheet.springs) {
     const Vec3 along{spring.rest.x, spring.rest.y, 0};
-    const bool over = model.wall[at(spring.a)] * model.wall[at(spring.b)] < 0;
-    if (!over && norm(along) > 0.1 * norm(spring.rest)) spring.rest = along;
+    if (norm(along) > 0.1 * norm(spring.rest)) spring.rest = along;
   }
   NetState state = state_at_rest(start);
   NetKernel kernel(sheet);
@@ -174,7 +174,7 @@ YarnCurves placed_curves(const YarnGraph& graph, const LoopModel& model, const s
     moved.turn_lower.push_back(turns[low]);
     moved.turn_upper.push_back(turns[high]);
   }
-  moved.wall = tube_walls(graph, rounds_of(graph, model.points));
+  moved.wall = tube_walls(graph, runs_of(graph, model.points), rounds_of(graph, model.points));
   const Layout flat = lay_out(graph, model.geometry);
   return build_yarn_curves(graph, model.geometry, flat,
                            moved_layout(graph, model.geometry, flat, std::move(moved)));

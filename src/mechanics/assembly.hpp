@@ -17,7 +17,7 @@ namespace loopwright {
 struct EnergyParts {
   double stretch = 0, bend = 0, contact = 0, plates = 0;
   double friction = 0;  // work against friction since the last Hessian: not stored in the cloth
-  double load = 0;      // of the loads on the measures: minus load times measure
+  double load = 0;      // of the loads on measures and points: minus load times place
   double stored() const { return stretch + bend + contact + plates; }
   double total() const { return stored() + friction + load; }
 };

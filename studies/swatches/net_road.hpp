@@ -23,7 +23,7 @@ struct LoopSize {
 };
 using LoopSizes = std::map<FacePattern, LoopSize>;  // by representative
 
-// Knits and relaxes a cell of every pattern (some thirty of them).
+// Knits and relaxes a cell of every pattern (22 of them).
 LoopSizes relax_face_cells(const MachineModel& machine);
 void write_loop_sizes(const std::filesystem::path& path, const LoopSizes& sizes);
 LoopSizes read_loop_sizes(const std::filesystem::path& path);

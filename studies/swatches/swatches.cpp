@@ -2,6 +2,7 @@
 //   study_swatches cells TABLE                    relax a cell of every pattern of faces, for the net road
 //   study_swatches list FOLDER                    names of the swatches
 //   study_swatches predict FOLDER NAME ROWS TABLE one swatch, by its cell and by the net: ROWS/NAME.row
+//   study_swatches predict-net (the same)         by the net alone
 //   study_swatches collect FOLDER ROWS OUT        all rows: OUT/results.csv, details.csv, figures on the
 //   screen
 //   study_swatches uncertainty FOLDER ROWS OUT N  swatches whose cells have N loops or fewer, with what is
@@ -62,7 +63,7 @@ std::map<std::string, double> read_row(const std::filesystem::path& path) {
 }
 
 int predict(const std::filesystem::path& folder, const std::string& name, const std::filesystem::path& rows,
-            const std::filesystem::path& table) {
+            const std::filesystem::path& table, bool with_cell) {
   const auto swatches = measured_swatches(folder);
   const auto found = std::find_if(swatches.begin(), swatches.end(),
                                   [&name](const MeasuredSwatch& s) { return s.name == name; });
@@ -70,12 +71,21 @@ int predict(const std::filesystem::path& folder, const std::string& name, const 
   std::filesystem::create_directories(rows);
   const MachineModel machine;
   const SwatchPrediction net = predict_by_net(found->file, machine, read_loop_sizes(table));
+  const auto write_row = [&](const SwatchPrediction& cell) {
+    AtomicFile file(rows / (name + ".row"));
+    for (const auto& [key, value] : row_of(cell, net)) file.stream() << key << ' ' << value << '\n';
+    file.commit();
+  };
   SwatchWork work;
   work.stretched = true;
   work.state = rows / (name + ".h5");
   SwatchPrediction cell;
   try {
-    cell = predict_by_cell(found->file, work);
+    if (with_cell) {
+      cell = predict_by_cell(found->file, work);
+    } else {
+      cell.trouble = "the cell took too long";
+    }
   } catch (const std::exception& error) {
     cell.trouble = error.what();
   }
@@ -85,11 +95,9 @@ int predict(const std::filesystem::path& folder, const std::string& name, const 
     std::cerr << name << ": " << (cell.trouble.empty() ? "the cell did not come to rest whole" : cell.trouble)
               << "; the net's size is taken\n";
     cell.width_mm = net.width_mm, cell.height_mm = net.height_mm, cell.mass_g = net.mass_g;
-    cell.converged = false;
+    cell.converged = cell.stretched_converged = false;
   }
-  AtomicFile file(rows / (name + ".row"));
-  for (const auto& [key, value] : row_of(cell, net)) file.stream() << key << ' ' << value << '\n';
-  file.commit();
+  write_row(cell);
   return 0;
 }
 
@@ -136,6 +144,10 @@ int collect(const std::filesystem::path& folder, const std::filesystem::path& ro
     auto row = read_row(rows_folder / (s.name + ".row"));
     if (row.contains("seconds_stretch")) rows[s.name] = std::move(row);
   }
+  if (rows.empty()) {
+    std::cerr << "no swatch has a result yet: nothing is written\n";
+    return 1;
+  }
   AtomicFile results(out / "results.csv"), details(out / "details.csv");
   results.stream() << "swatch,measured_width_mm,predicted_width_mm,measured_height_mm,predicted_height_mm,"
                       "measured_mass_g,predicted_mass_g,seconds,converged,interlacings_intact\n";
@@ -159,8 +171,11 @@ int collect(const std::filesystem::path& folder, const std::filesystem::path& ro
                   known(s.mass_g).c_str(), r["mass_g"], took, static_cast<int>(r["converged"]),
                   r["interlacings"] > 0 && r["interlacings"] == r["interlacings_intact"] ? 1 : 0);
     results.stream() << line;
-    details.stream() << s.name << ',' << r["width_mm"] / s.width_mm - 1 << ','
-                     << r["height_mm"] / s.height_mm - 1 << ',' << r["mass_g"] / s.mass_g - 1 << ','
+    const auto error = [](double predicted, double measured) {
+      return measured > 0 ? std::to_string(predicted / measured - 1) : "";
+    };
+    details.stream() << s.name << ',' << error(r["width_mm"], s.width_mm) << ','
+                     << error(r["height_mm"], s.height_mm) << ',' << error(r["mass_g"], s.mass_g) << ','
                      << known(s.stretched_width_mm) << ',' << known(s.stretched_height_mm);
     for (const auto& [key, value] : row_of({}, {})) details.stream() << ',' << r[key];
     details.stream() << '\n';
@@ -190,7 +205,7 @@ int collect(const std::filesystem::path& folder, const std::filesystem::path& ro
   median_errors(widths, "width, always the median");
   median_errors(heights, "height, always the median");
   std::printf("%zu of %zu swatches, %.0f s of work\n", rows.size(), swatches.size(), seconds);
-  return 0;
+  return rows.size() == swatches.size() ? 0 : 1;
 }
 
 // How far a prediction moves with what is not known well: friction from none to no slip, take-down by a
@@ -252,17 +267,18 @@ int run(const std::vector<std::string>& words) {
     for (const MeasuredSwatch& s : measured_swatches(words[1])) std::cout << s.name << '\n';
     return 0;
   }
-  if (words.size() == 5 && words[0] == "predict") {
+  if (words.size() == 5 && (words[0] == "predict" || words[0] == "predict-net")) {
     set_thread_count(1);
-    return predict(words[1], words[2], words[3], words[4]);
+    return predict(words[1], words[2], words[3], words[4], words[0] == "predict");
   }
   if (words.size() == 5 && words[0] == "uncertainty") {
     set_thread_count(1);
     return uncertainty(words[1], words[2], words[3], std::stod(words[4]));
   }
   if (words.size() == 4 && words[0] == "collect") return collect(words[1], words[2], words[3]);
-  std::cerr << "study_swatches cells TABLE | list FOLDER | predict FOLDER NAME ROWS TABLE | collect FOLDER "
-               "ROWS OUT | uncertainty FOLDER ROWS OUT MOST_LOOPS\n";
+  std::cerr
+      << "study_swatches cells TABLE | list FOLDER | predict[-net] FOLDER NAME ROWS TABLE | collect FOLDER "
+         "ROWS OUT | uncertainty FOLDER ROWS OUT MOST_LOOPS\n";
   return 2;
 }
 

@@ -228,9 +228,8 @@ std::optional<FoundRepeat> repeat_in(const StitchTable& table, int least_seen) {
     found.range.repeat_starts.push_back(starts[static_cast<std::size_t>(start)]);
   }
   found.range.repeat_starts.push_back(std::numeric_limits<int>::max());
-  // The cell's height is its distance from the repeat before or after it.
-  if (first - courses.period < 0 && first + 2 * courses.period > static_cast<int>(starts.size()))
-    return std::nullopt;
+  // The cell's height is its distance from what repeats before or after it.
+  if (first < 1 && first + courses.period >= static_cast<int>(starts.size())) return std::nullopt;
   return found;
 }
 

@@ -33,12 +33,20 @@ Knitted run(Program program, Diagnostics& diagnostics) {
 }
 
 // `rear(wale, course)`: which loops show their rear; each is moved to its bed before it is knitted through.
-Knitted swatch(int wales, int courses, const std::function<bool(int, int)>& rear) {
+// `yarn(course)`: 1 or 2, at least two courses each.
+Knitted swatch(
+    int wales, int courses, const std::function<bool(int, int)>& rear,
+    const std::function<int(int)>& yarn = [](int) { return 1; }) {
   std::ostringstream text;
-  text << ";!knitout-2\n;;Carriers: 1\ninhook 1\n";
+  text << ";!knitout-2\n;;Carriers: 1 2\nin 1\n";
   for (int w = wales - 1; w >= 0; --w) text << "knit - f" << w << " 1\n";
   std::string on(static_cast<std::size_t>(wales), 'f');
+  bool second_in = false;
   for (int c = 0; c < courses; ++c) {
+    if (c > 0 && yarn(c) == 2 && yarn(c - 1) == 1 && !second_in) {
+      text << "in 2\n";
+      second_in = true;
+    }
     for (int w = 0; w < wales; ++w) {
       char& at = on[static_cast<std::size_t>(w)];
       const char wanted = rear(w, c) ? 'b' : 'f';
@@ -47,11 +55,11 @@ Knitted swatch(int wales, int courses, const std::function<bool(int, int)>& rear
     }
     for (int k = 0; k < wales; ++k) {
       const int w = c % 2 == 0 ? k : wales - 1 - k;
-      text << "knit " << (c % 2 == 0 ? '+' : '-') << ' ' << on[static_cast<std::size_t>(w)] << w << " 1\n";
+      text << "knit " << (c % 2 == 0 ? '+' : '-') << ' ' << on[static_cast<std::size_t>(w)] << w << ' '
+           << yarn(c) << '\n';
     }
-    if (c == 1) text << "releasehook 1\n";
   }
-  text << "outhook 1\n";
+  text << "out 1\n" << (second_in ? "out 2\n" : "");
   Diagnostics diagnostics("swatch.k");
   Knitted knitted = run(read_knitout(text.str(), diagnostics), diagnostics);
   EXPECT_TRUE(diagnostics.ok()) << diagnostics;
@@ -88,6 +96,7 @@ TEST(FindRepeat, FindsTheSmallestRepeatOfFaces) {
       {"garter", 1, 2, [](int, int c) { return c % 2 == 1; }},
       {"rib 1x1", 2, 1, [](int w, int) { return w % 2 == 1; }},
       {"moss", 2, 2, [](int w, int c) { return (w + c) % 2 == 1; }},
+      {"rib 6x3", 9, 1, [](int w, int) { return w % 9 < 3; }},
       {"rib 3x2", 5, 1, [](int w, int) { return w % 5 < 2; }},
       {"basket", 6, 4, [](int w, int c) { return (w % 6 < 3) != (c % 4 < 2); }},
   };
@@ -103,6 +112,17 @@ TEST(FindRepeat, FindsTheSmallestRepeatOfFaces) {
     EXPECT_EQ(check.intact, c.wales * c.courses) << c.name;
     EXPECT_EQ(check.expected, check.intact) << c.name;
   }
+}
+
+TEST(FindRepeat, StripesOfTwoYarnsRepeatAsStripes) {
+  const Knitted knitted = swatch(
+      20, 24, [](int, int) { return false; }, [](int c) { return c % 4 < 2 ? 1 : 2; });
+  const auto repeat = find_repeat(knitted.graph, inner(knitted.graph, 2, 20));
+  ASSERT_TRUE(repeat);
+  EXPECT_EQ(repeat->courses, 4);
+  const Fabric cell = cell_of(knitted, *repeat);
+  EXPECT_EQ(cell.yarns.size(), 4U);
+  EXPECT_EQ(check_interlacings(cell).intact, 4);
 }
 
 TEST(FindRepeat, LeavesOutWhatTheRegionHasBesideIt) {

@@ -308,7 +308,10 @@ Vec3 tilted(const CrossingTilt& tilt, const Vec3& offset, double reach) {
   const double more = offset.y < 0 ? std::clamp(-offset.y / reach, 1.0, 1.5) : 1;
   const double angle = (tilt.below + (tilt.above - tilt.below) * share) * more;
   const double c = std::cos(angle), s = std::sin(angle);
-  return {offset.x, c * offset.y - s * offset.z, s * offset.y + c * offset.z};
+  // What lies deep in a stack goes up and down with the rest of the crossing, else heads and feet would
+  // change places.
+  const double layer = std::clamp(offset.z, -1.3 * reach, 1.3 * reach);
+  return {offset.x, c * offset.y - s * layer, s * offset.y + c * offset.z};
 }
 
 }  // namespace

@@ -159,7 +159,7 @@ class NetBuilder {
         const bool turns = first.direction != second.direction;
         // Round the edge of a tube the face is the same, seen from outside, where it differs from front to
         // rear.
-        const bool over = turns && walls_[from.position()] * walls_[to.position()] < 0;
+        const bool over = walls_[from.position()] * walls_[to.position()] < 0;
         const bool odd =
             over ? first.side == second.side : !turns && first.side != second.side && wales < 1.5;
         const Connection& connection = odd ? table_.weft_odd : table_.weft_even;
@@ -395,7 +395,7 @@ LoopModel build_loop_model(const YarnGraph& graph, const Program& program, const
   YarnCurves curves = build_yarn_curves(graph, geometry);
   CorrelationMap map(graph, points, start, curves);
   const LoopYarn yarn = loop_yarn(program, geometry);
-  const std::vector<std::int8_t> walls = tube_walls(graph, runs_of(graph, points), rounds_of(graph, points));
+  const std::vector<std::int8_t> walls = tube_walls(graph, rounds_of(graph, points));
   MassSpringNet net = NetBuilder(graph, options, yarn, points, start, walls).build();
   // (8): the fabric's mass is shared by the binding points
   const double whole = loop_mass(yarn) * static_cast<double>(graph.loops.size());

@@ -47,10 +47,7 @@ void turn_edges(const YarnGraph& graph, const LoopModel& model, const std::vecto
     const std::size_t order = static_cast<std::size_t>(loop.order);
     if (order == 0 || order + 1 >= yarn.size() || loop.parents.empty()) continue;
     const std::size_t before = lower(yarn[order - 1]), after = lower(yarn[order + 1]), own = lower(LoopId(k));
-    const auto is_over = [&](LoopId next, std::size_t point) {
-      return graph.loop(next).direction != loop.direction && model.wall[own] * model.wall[point] < 0;
-    };
-    const bool over = is_over(yarn[order - 1], before) || is_over(yarn[order + 1], after);
+    const bool over = model.wall[own] * model.wall[before] < 0 || model.wall[own] * model.wall[after] < 0;
     if (!over) continue;
     Vec3 course = places[after] - places[before];
     if (loop.direction == Direction::left) course = -course;
@@ -174,7 +171,7 @@ YarnCurves placed_curves(const YarnGraph& graph, const LoopModel& model, const s
     moved.turn_lower.push_back(turns[low]);
     moved.turn_upper.push_back(turns[high]);
   }
-  moved.wall = tube_walls(graph, runs_of(graph, model.points), rounds_of(graph, model.points));
+  moved.wall = tube_walls(graph, rounds_of(graph, model.points));
   const Layout flat = lay_out(graph, model.geometry);
   return build_yarn_curves(graph, model.geometry, flat,
                            moved_layout(graph, model.geometry, flat, std::move(moved)));

@@ -108,28 +108,6 @@ class RoundFinder {
   double seen_ = 0;
 };
 
-// A course that goes to and fro between the wales of both walls closes the tube (interlock before or after
-// it): there is one double cloth, and no wall.
-void clear_mixed_runs(const YarnGraph& graph, const std::vector<Run>& runs, const std::vector<Round>& rounds,
-                      std::vector<std::int8_t>& walls) {
-  std::vector<bool> in_round(graph.loops.size(), false);
-  for (const Round& round : rounds)
-    for (const Run& run : {round.one, round.other})
-      in_round[graph.yarns[run.yarn].loops[run.first].position()] = true;
-  constexpr std::size_t share = 5;
-  for (const Run& run : runs) {
-    const std::vector<LoopId>& loops = graph.yarns[run.yarn].loops;
-    if (in_round[loops[run.first].position()]) continue;
-    std::size_t front = 0, rear = 0;
-    for (std::size_t i = run.first; i <= run.last; ++i) {
-      front += walls[loops[i].position()] > 0 ? 1 : 0;
-      rear += walls[loops[i].position()] < 0 ? 1 : 0;
-    }
-    if (share * std::min(front, rear) <= run.size()) continue;
-    for (std::size_t i = run.first; i <= run.last; ++i) walls[loops[i].position()] = 0;
-  }
-}
-
 }  // namespace
 
 std::vector<Run> runs_of(const YarnGraph& graph, const BindingPoints& points) {
@@ -164,8 +142,7 @@ std::vector<Round> rounds_of(const YarnGraph& graph, const BindingPoints& points
   return rounds;
 }
 
-std::vector<std::int8_t> tube_walls(const YarnGraph& graph, const std::vector<Run>& runs,
-                                    const std::vector<Round>& rounds) {
+std::vector<std::int8_t> tube_walls(const YarnGraph& graph, const std::vector<Round>& rounds) {
   std::vector<std::int8_t> walls(graph.loops.size(), 0);
   std::deque<LoopId> reached;
   for (const Round& round : rounds)
@@ -187,7 +164,6 @@ std::vector<std::int8_t> tube_walls(const YarnGraph& graph, const std::vector<Ru
           reached.push_back(next);
         }
   }
-  clear_mixed_runs(graph, runs, rounds, walls);
   return walls;
 }
 

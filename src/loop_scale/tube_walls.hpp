@@ -26,10 +26,8 @@ struct Round {
 std::vector<Round> rounds_of(const YarnGraph& graph, const BindingPoints& points);
 
 // By loop: 1 in a wall that lay toward the front bed, -1 toward the rear bed, 0 in no tube. Loops of no round
-// belong to the wall whose wales they continue, unless their course joins the wales of both. `runs`: of the
-// whole piece.
-std::vector<std::int8_t> tube_walls(const YarnGraph& graph, const std::vector<Run>& runs,
-                                    const std::vector<Round>& rounds);
+// belong to the wall whose wales they continue.
+std::vector<std::int8_t> tube_walls(const YarnGraph& graph, const std::vector<Round>& rounds);
 
 // By binding point, from the loops that meet there.
 std::vector<std::int8_t> walls_of_points(const BindingPoints& points, const std::vector<std::int8_t>& walls);

@@ -179,11 +179,14 @@ void add_commands(CLI::App& app, Commands& commands, Action& action) {
   stretch->add_option("--step", commands.stretch.step, "Largest step of strain")
       ->check(CLI::Range(1e-4, 0.2))
       ->capture_default_str();
-  stretch->add_option("--load", commands.stretch.load, "Forces to go to instead, N/m: 20 0 loads and unloads")
-      ->excludes(strains);
+  CLI::Option* loads = stretch
+                           ->add_option("--load", commands.stretch.load,
+                                        "Forces to go to instead, N/m: 20 0 loads and unloads")
+                           ->excludes(strains);
   stretch
       ->add_option("--load-step", commands.stretch.load_step,
                    "Largest step of force, N/m; a twentieth if not said")
+      ->needs(loads)
       ->check(CLI::PositiveNumber);
   stretch->add_flag("--held-across", commands.stretch.held_across, "The other size stays as it is");
   stretch->add_option("--csv", commands.stretch.csv, "Write the points as CSV, - for standard output")

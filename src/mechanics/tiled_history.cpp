@@ -31,25 +31,19 @@ ContactHistory tiled_history(const Fabric& cell, const ContactHistory& history, 
   };
 
   ContactHistory tiled;
-  for (const auto& contact : history) {
-    const auto [begin, end] = copies_of(contact.pair.a);
+  for (const ContactSlip& contact : history) {
+    const auto [begin, end] = copies_of(contact.a);
     for (auto a = begin; a != end; ++a) {
-      const Copy wanted{contact.pair.b, a->m + contact.pair.m, a->n + contact.pair.n, 0};
+      const Copy wanted{contact.b, a->m + contact.m, a->n + contact.n, 0};
       const auto b = std::lower_bound(copies.begin(), copies.end(), wanted, before);
       if (b == copies.end() || before(wanted, *b)) continue;
-      tiled.push_back(contact);
-      SegmentPair& pair = tiled.back().pair;
-      pair = {};
-      pair.a = a->segment;
-      pair.b = b->segment;
-      if (pair.a > pair.b) {  // pairs are listed once, the lower segment first
-        std::swap(pair.a, pair.b);
-        tiled.back().law.slip = -contact.law.slip;
-      }
+      const bool in_order = a->segment < b->segment;  // pairs are listed once, the lower segment first
+      tiled.push_back({std::min(a->segment, b->segment), std::max(a->segment, b->segment), 0, 0,
+                       in_order ? contact.slip : -contact.slip});
     }
   }
-  std::sort(tiled.begin(), tiled.end(), [](const auto& a, const auto& b) {
-    return std::tie(a.pair.a, a.pair.b) < std::tie(b.pair.a, b.pair.b);
+  std::sort(tiled.begin(), tiled.end(), [](const ContactSlip& a, const ContactSlip& b) {
+    return std::tie(a.a, a.b) < std::tie(b.a, b.b);
   });
   return tiled;
 }

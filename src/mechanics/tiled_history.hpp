@@ -2,7 +2,7 @@
 // piece too.
 #pragma once
 #include "geometry/start_from_cell.hpp"
-#include "mechanics/newton.hpp"
+#include "mechanics/assembly.hpp"
 
 namespace loopwright {
 

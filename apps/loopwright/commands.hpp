@@ -67,6 +67,15 @@ struct HomogeniseCommand {
 };
 int run(const HomogeniseCommand& command);
 
+// How size and stiffness of a cell depend on its yarn's data. Deviations: KEY=PERCENT.
+struct SensitivityCommand {
+  std::string file, csv, json;
+  PieceRequest piece{.periodic = true, .friction = 0.0, .segments_per_loop = 24};
+  std::vector<std::string> deviations;
+  int threads = 0;  // 0: all
+};
+int run(const SensitivityCommand& command);
+
 struct PictureRequest {
   std::string view = "front";
   std::string size = "1600x1200";  // pixels

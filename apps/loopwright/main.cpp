@@ -20,6 +20,7 @@ struct Commands {
   RelaxCommand relax;
   StretchCommand stretch;
   HomogeniseCommand homogenise;
+  SensitivityCommand sensitivity;
   RenderCommand render;
   AnimateCommand animate;
   MeasureCommand measure;
@@ -124,6 +125,20 @@ void add_homogenise(CLI::App& command, HomogeniseCommand& homogenise) {
       ->capture_default_str();
   add_segments_option(command, homogenise.piece);
   add_thread_option(command, homogenise.threads);
+}
+
+void add_sensitivity(CLI::App& command, SensitivityCommand& sensitivity) {
+  command.add_option("FILE", sensitivity.file, "Fabric or knitout file, or a saved cell")->required();
+  command
+      .add_option("--deviation", sensitivity.deviations,
+                  "Standard deviation of a quantity in per cent: loop-length=2 bend-stiffness=20")
+      ->type_name("KEY=PERCENT");
+  command.add_option("--csv", sensitivity.csv, "Write the table as CSV, - for standard output")
+      ->type_name("FILE");
+  command.add_option("--json", sensitivity.json, "Write it as JSON to a file, - for standard output")
+      ->type_name("FILE");
+  add_segments_option(command, sensitivity.piece);
+  add_thread_option(command, sensitivity.threads);
 }
 
 using Action = std::function<int()>;
@@ -257,6 +272,11 @@ void add_commands(CLI::App& app, Commands& commands, Action& action) {
       "homogenise", "Membrane constants of a cell: stiffness, Poisson's ratios, forces over strains");
   add_homogenise(*homogenise, commands.homogenise);
   homogenise->callback([&] { action = [&] { return run(commands.homogenise); }; });
+
+  CLI::App* sensitivity =
+      app.add_subcommand("sensitivity", "How a cell's size and stiffness depend on the data of its yarn");
+  add_sensitivity(*sensitivity, commands.sensitivity);
+  sensitivity->callback([&] { action = [&] { return run(commands.sensitivity); }; });
 
   CLI::App* render =
       app.add_subcommand("render", "Draw a picture of a file's first geometry or of a saved state");

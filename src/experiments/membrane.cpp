@@ -119,12 +119,16 @@ std::vector<std::size_t> outward(const std::vector<double>& strains) {
 
 MembraneStiffness membrane_stiffness(const RelaxResult& rest, const RelaxOptions& options) {
   require_cell(rest.fabric, options);
-  const Block s = condensed_stiffness(rest_hessian(rest.fabric, options.model, true));
+  return membrane_stiffness(rest.fabric, rest_hessian(rest.fabric, options.model, true),
+                            options.model.material.reference_bend_N_m2);
+}
+
+MembraneStiffness membrane_stiffness(const Fabric& fabric, const RestHessian& at, double bend_N_m2) {
+  const Block s = condensed_stiffness(at);
   const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> measures(s.data());
-  const Eigen::Matrix3d j = measures_by_strains(rest.fabric);
-  const double d = rest.fabric.diameter_mm * 1e-3;
-  const double unit = options.model.material.reference_bend_N_m2 / (d * d * d) /
-                      (rest.fabric.width * rest.fabric.height);  // B/d^3 over the cell's area
+  const Eigen::Matrix3d j = measures_by_strains(fabric);
+  const double d = fabric.diameter_mm * 1e-3;
+  const double unit = bend_N_m2 / (d * d * d) / (fabric.width * fabric.height);  // B/d^3 over the cell's area
   const Eigen::Matrix3d C = unit * j.transpose() * measures * j;
 
   MembraneStiffness stiffness;

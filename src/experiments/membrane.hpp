@@ -8,6 +8,7 @@
 #include <functional>
 #include <vector>
 
+#include "experiments/rest_hessian.hpp"
 #include "experiments/stretch.hpp"
 
 namespace loopwright {
@@ -27,6 +28,9 @@ struct MembraneStiffness {
 // is applied). `rest`: of sharp_rest(). Throws std::invalid_argument for a fabric that is not periodic or a
 // material without reference_bend_N_m2, std::runtime_error as condensed_stiffness().
 MembraneStiffness membrane_stiffness(const RelaxResult& rest, const RelaxOptions& options);
+
+// The same from a Hessian over all three measures, the cell pinned; B of the reference yarn.
+MembraneStiffness membrane_stiffness(const Fabric& fabric, const RestHessian& at, double bend_N_m2);
 
 struct StrainGrid {
   // Strains, ascending, each list with 0 among them; every combination is a point.

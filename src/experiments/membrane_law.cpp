@@ -93,7 +93,7 @@ PullLaw fit_pull(std::span<const double> strain, std::span<const double> force) 
   columns.col(0) = e;
   const auto constants = [&](double reach) {
     columns.col(1) = locking_column(e, reach);
-    return solved(columns, f, 1);
+    return solved(columns, f, 0);
   };
   const double reach = best_reach([&](double r) {
     const Eigen::VectorXd x = constants(r);

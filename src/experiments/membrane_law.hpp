@@ -27,9 +27,9 @@ struct PullLaw {
   double operator()(double strain) const;
 };
 
-// Least squares over all points, beta not below 0 (then alpha means nothing). Strains and forces of one pull,
-// strains not below 0. Throws std::invalid_argument for fewer than four points, lists of unequal length or
-// values that are not finite.
+// Least squares over all points, Y and beta not below 0 (at beta = 0 alpha means nothing). Strains and forces
+// of one pull, strains not below 0. Throws std::invalid_argument for fewer than four points, lists of unequal
+// length or values that are not finite.
 PullLaw fit_pull(std::span<const double> strain, std::span<const double> force);
 
 struct MembraneLaw {

@@ -38,6 +38,7 @@ struct PieceRequest {
   std::optional<WindowSize> window{};  // a part with held edges
   bool start_from_cell = false;  // held pieces of a repeated notation: relax() starts from the relaxed repeat
   std::optional<double> friction{};  // coefficient of yarn on yarn, instead of the yarn's own
+  double segments_per_loop = 12;     // splines' segments in a loop of the notation's length
 };
 
 // notation -> machine -> topology. What is wrong is said in `diagnostics`; what could be understood is there.

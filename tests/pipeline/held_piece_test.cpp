@@ -83,7 +83,7 @@ TEST_P(HeldPiece, RestsInFewStepsWithAllInterlacings) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Structures, HeldPiece,
-                         testing::Values("plain", "rib", "garter", "half_cardigan", "single_pique"),
+                         testing::Values("plain", "rib", "garter", "half_cardigan", "lace"),
                          [](const auto& structure) { return std::string(structure.param); });
 
 // Iterations that the two-level solver needs for the step after a pull on the frame.

@@ -10,6 +10,7 @@
 namespace loopwright {
 namespace {
 
+constexpr int hat_patches = 2;    // side of a cell of hat functions, in patches
 constexpr int patch_nodes = 250;  // wanted in a patch, its overlap not counted
 
 std::size_t place(std::int32_t i) { return static_cast<std::size_t>(i); }
@@ -87,7 +88,13 @@ void Schwarz::set_patches(const std::vector<Vec3>& places, const std::vector<std
   std::vector<std::vector<std::int32_t>> own(place(grid.nx * grid.ny));
   for (std::size_t i = 0; i < places.size(); ++i)
     own[grid.cell(places[i])].push_back(static_cast<std::int32_t>(i));
-  coarse_ = coarse.points > 0 ? coarse : hat_space(places, held, grid.nx, grid.ny);
+  levels_.clear();
+  const auto add_level = [this](CoarseSpace space) {
+    levels_.push_back(std::make_unique<Level>());
+    levels_.back()->space = std::move(space);
+  };
+  if (coarse.points > 0) add_level(coarse);
+  add_level(hat_space(places, held, std::max(1, grid.nx / hat_patches), std::max(1, grid.ny / hat_patches)));
 
   patches_.clear();
   std::vector<std::uint8_t> in(places.size(), 0);
@@ -108,10 +115,12 @@ bool Schwarz::factor(const BlockMatrix& matrix, double shift) {
     patch.factor.compact();
   });
   if (!definite) return false;
-  BlockMatrix seen_by_coarse;
-  coarse_.project(matrix, shift, seen_by_coarse);
-  if (!coarse_factor_.factor(seen_by_coarse, 0)) return false;
-  coarse_factor_.compact();
+  BlockMatrix seen;
+  for (const auto& level : levels_) {
+    level->space.project(matrix, shift, seen);
+    if (!level->factor.factor(seen, 0)) return false;
+    level->factor.compact();
+  }
   return true;
 }
 
@@ -126,11 +135,14 @@ void Schwarz::solve(const Unknowns& b, Unknowns& x) {
   for (const auto& patch : patches_)
     for (std::size_t k = 0; k < patch->nodes.size(); ++k) x.u[place(patch->nodes[k])] += patch->result.u[k];
 
-  coarse_.restricted(b.u, coarse_right_.u);
-  coarse_right_.g = b.g;
-  coarse_factor_.solve(coarse_right_, coarse_result_);
-  coarse_.add_prolonged(coarse_result_.u, x.u);
-  x.g = coarse_result_.g;
+  x.g = {};
+  for (const auto& level : levels_) {
+    level->space.restricted(b.u, level->right.u);
+    level->right.g = b.g;
+    level->factor.solve(level->right, level->result);
+    level->space.add_prolonged(level->result.u, x.u);
+    for (std::size_t k = 0; k < 3; ++k) x.g[k] += level->result.g[k];
+  }
 }
 
 }  // namespace loopwright

@@ -1,13 +1,13 @@
-// Two-level Schwarz preconditioner: the fabric is cut into overlapping patches of nearly equal size, each
-// patch's own block of the matrix is factored, and a coarse space joins them with the fabric's measures.
-// Factors cost the same per loop however large the fabric is, where a factor of the whole matrix grows faster
-// than its loops.
+// Schwarz preconditioner: the fabric is cut into overlapping patches of nearly equal size, each patch's own
+// block of the matrix is factored, and coarse spaces join them with the fabric's measures. Factors cost the
+// same per loop however large the fabric is, where a factor of the whole matrix grows faster than its loops.
 //
-//   M^-1 = sum_p R_p' (R_p (A + shift D) R_p')^-1 R_p  +  P (P' (A + shift D) P)^-1 P'
+//   M^-1 = sum_p R_p' (R_p (A + shift D) R_p')^-1 R_p  +  sum_c P_c (P_c' (A + shift D) P_c)^-1 P_c'
 //
-// R_p picks the control points of a patch and their next neighbours along the yarn; columns of P are the
-// coarse points for each direction, and the measures themselves. Source: Smith, Bjorstad, Gropp, Domain
-// Decomposition (1996), the additive two-level method.
+// R_p picks the control points of a patch and their next neighbours along the yarn. There are two coarse
+// spaces: the binding points (binding_space.hpp), which see loops move against each other, and hat functions
+// over squares of patches, which follow long waves, rotations among them; each is joined by the measures.
+// Source: Smith, Bjorstad, Gropp, Domain Decomposition (1996), additive methods of several levels.
 #pragma once
 #include <memory>
 #include <vector>
@@ -19,8 +19,8 @@ namespace loopwright {
 
 class Schwarz {
  public:
-  // Control points by their places in the plane. `coarse` has a row for each of them; if it has no points,
-  // hat functions on the grid of patches take its place.
+  // Control points by their places in the plane. `coarse`, beside the hat functions, has a row for each of
+  // them or no points.
   void set_patches(const std::vector<Vec3>& places, const std::vector<std::uint8_t>& held,
                    const BlockMatrix& matrix, const CoarseSpace& coarse);
   bool ready() const { return !patches_.empty(); }
@@ -35,10 +35,15 @@ class Schwarz {
     Unknowns right, result;
   };
 
+  // A coarse space with the factor of the matrix that it sees.
+  struct Level {
+    CoarseSpace space;
+    Cholesky factor;
+    Unknowns right, result;
+  };
+
   std::vector<std::unique_ptr<Patch>> patches_;
-  CoarseSpace coarse_;
-  Cholesky coarse_factor_;
-  Unknowns coarse_right_, coarse_result_;
+  std::vector<std::unique_ptr<Level>> levels_;
 };
 
 }  // namespace loopwright

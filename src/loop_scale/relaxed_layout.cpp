@@ -117,6 +117,14 @@ bool is_torn(const MassSpringNet& net, const std::vector<Vec3>& start) {
   return torn > few * warps;
 }
 
+// Whether stitches lie on both sides of one cloth: ribs and purls, but no walls of a tube one over the other.
+bool is_folded_sheet(const LoopModel& model) {
+  const auto in_tube = [](std::int8_t wall) { return wall != 0; };
+  const auto odd = [](const Spring& spring) { return spring.rest.z != 0; };
+  return std::none_of(model.wall.begin(), model.wall.end(), in_tube) &&
+         std::any_of(model.net.springs.begin(), model.net.springs.end(), odd);
+}
+
 // Such a piece laid out by the lengths of its springs instead of its needles, facing as the flat one does on
 // the whole. Empty where that cannot be.
 std::vector<Vec3> metric_places(const YarnGraph& graph, const LoopModel& model) {
@@ -158,25 +166,6 @@ std::vector<Vec3> folded_sheet(const YarnGraph& graph, const LoopModel& model, c
   return places;
 }
 
-// First curves where the masses are: the type value points are placed anew, round binding points that turn as
-// the cloth does, so that every crossing is as the template has it. (The correlation map would carry along
-// what the flat layout had to do to loops that were moved far.)
-YarnCurves placed_curves(const YarnGraph& graph, const LoopModel& model, const std::vector<Vec3>& places) {
-  const std::vector<Rotation> turns = turns_of(graph, model, places);
-  MovedPlaces moved;
-  for (std::size_t k = 0; k < graph.loops.size(); ++k) {
-    const std::size_t low = at(model.points.lower[k]), high = at(model.points.upper[k]);
-    moved.lower.push_back(places[low]);
-    moved.upper.push_back(places[high]);
-    moved.turn_lower.push_back(turns[low]);
-    moved.turn_upper.push_back(turns[high]);
-  }
-  moved.wall = tube_walls(graph, rounds_of(graph, model.points));
-  const Layout flat = lay_out(graph, model.geometry);
-  return build_yarn_curves(graph, model.geometry, flat,
-                           moved_layout(graph, model.geometry, flat, std::move(moved)));
-}
-
 }  // namespace
 
 LoopModelOptions layout_options() {
@@ -193,6 +182,28 @@ SettleOptions layout_settling() {
   return options;
 }
 
+// First curves where the masses are: the type value points are placed anew, round binding points that turn as
+// the cloth does, so that every crossing is as the template has it. (The correlation map would carry along
+// what the flat layout had to do to loops that were moved far.)
+Layout placed_layout(const YarnGraph& graph, const LoopModel& model, const std::vector<Vec3>& places) {
+  const std::vector<Rotation> turns = turns_of(graph, model, places);
+  MovedPlaces moved;
+  for (std::size_t k = 0; k < graph.loops.size(); ++k) {
+    const std::size_t low = at(model.points.lower[k]), high = at(model.points.upper[k]);
+    moved.lower.push_back(places[low]);
+    moved.upper.push_back(places[high]);
+    moved.turn_lower.push_back(turns[low]);
+    moved.turn_upper.push_back(turns[high]);
+  }
+  moved.wall = tube_walls(graph, rounds_of(graph, model.points));
+  return moved_layout(graph, model.geometry, lay_out(graph, model.geometry), std::move(moved));
+}
+
+YarnCurves placed_curves(const YarnGraph& graph, const LoopModel& model, const std::vector<Vec3>& places) {
+  return build_yarn_curves(graph, model.geometry, lay_out(graph, model.geometry),
+                           placed_layout(graph, model, places));
+}
+
 RelaxedLayout relaxed_layout(const YarnGraph& graph, const Program& program, const LoopModelOptions& options,
                              const SettleOptions& settling) {
   RelaxedLayout layout{build_loop_model(graph, program, options), {}, {}, {}};
@@ -202,6 +213,11 @@ RelaxedLayout relaxed_layout(const YarnGraph& graph, const Program& program, con
   if (!is_sheet && is_torn(model.net, model.start)) {
     start = metric_places(graph, model);
     is_sheet = !start.empty();
+  }
+  if (!is_sheet && is_folded_sheet(model)) {
+    start = model.start;
+    for (Vec3& place : start) place.z = 0;
+    is_sheet = true;
   }
   if (is_sheet) start = folded_sheet(graph, model, start, settling);
   if (start.empty()) start = model.start;

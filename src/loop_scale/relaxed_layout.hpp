@@ -3,6 +3,7 @@
 #pragma once
 #include <vector>
 
+#include "geometry/layout.hpp"
 #include "loop_scale/loop_model.hpp"
 #include "loop_scale/settle.hpp"
 
@@ -25,6 +26,10 @@ SettleOptions layout_settling();  // to 2e-4
 RelaxedLayout relaxed_layout(const YarnGraph& graph, const Program& program,
                              const LoopModelOptions& options = layout_options(),
                              const SettleOptions& settling = layout_settling());
+
+// The layout where the masses are, and first curves there. `places`: by binding point, in d.
+Layout placed_layout(const YarnGraph& graph, const LoopModel& model, const std::vector<Vec3>& places);
+YarnCurves placed_curves(const YarnGraph& graph, const LoopModel& model, const std::vector<Vec3>& places);
 
 // A run of loops that neighbours in a course make in one direction on one bed.
 struct CourseMeasure {

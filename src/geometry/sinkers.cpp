@@ -111,13 +111,17 @@ class SinkerPlacer {
     const double high = sy_ * layout.y_scale_lower[i];
     return layout.from_lower(id, {4 * side * sx_, -3 * high, z * r_}, 1.5 * high);
   }
+  // Whether a loop that stands upright leans away from a side, so that its legs lie on it.
+  bool comes_from(LoopId id, double side) const {
+    return !lies_flat(id) && side * piece_.layout.step(id).x < -3 * sx_;
+  }
 
   // A place beside the heads that a loop is drawn through, moved out past their legs where these lean that
   // way.
   Vec3 outside_legs(const Loop& loop, const Rotation& turn, double side, const Vec3& place) const {
     Vec3 own = turn.transposed(place);
     for (const LoopId parent : loop.parents) {
-      if (lies_flat(parent) || side * piece_.layout.step(parent).x > -1.5 * r_) continue;
+      if (!comes_from(parent, side)) continue;
       for (const TypePoint& leg : piece_.loops[parent.position()].points) {
         const Vec3 p = turn.transposed(leg.position);
         if (std::abs(p.y - own.y) < 2.5 * sy_) own.x = side * std::max(side * own.x, side * p.x + 2 * r_);

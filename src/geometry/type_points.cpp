@@ -210,22 +210,32 @@ class LoopPlacer {
                  at_upper(id, 0, 3 + 0.4 * sign.head_spread, sign.head_layer - 1.5 * sign.c));
   }
 
+  // Whether a tuck lies on the legs of a loop that was drawn through others: not in a cast-on.
+  bool lies_on_stitch(LoopId tuck) const {
+    const Loop& loop = graph_.loop(tuck);
+    if (loop.children.empty()) return true;
+    const std::vector<LoopId>& stack = graph_.loop(loop.children.front()).parents;
+    return std::any_of(stack.begin(), stack.end(),
+                       [&](LoopId id) { return graph_.loop(id).kind != LoopKind::tuck; });
+  }
+
   // A tuck's feet pass through nothing: they stand wide, outside the legs of the loop that the tuck lies on,
-  // and always below its head, however much the loops round it were pulled up.
+  // if any, and always below its head, however much the loops round it were pulled up.
   void tuck_half(LoopId id, double side, std::vector<TypePoint>& points) const {
+    const double wide = lies_on_stitch(id) ? 3.3 : 2.6;
     const LoopSigns& sign = signs_[id.position()];
     const double c = sign.c, s = sign.s, head = sign.head_layer;
     const Rotation turn = layout_.turn(id);
-    Vec3 foot = turn.transposed(at_lower(id, side * 3.4, -1.5, -1.2 * s));
-    const Vec3 upper_leg = turn.transposed(at_upper(id, side * 3.3, -1.556, head + 0.7 * c));
+    Vec3 foot = turn.transposed(at_lower(id, side * (wide + 0.1), -1.5, -1.2 * s));
+    const Vec3 upper_leg = turn.transposed(at_upper(id, side * wide, -1.556, head + 0.7 * c));
     foot.y = std::min(foot.y, upper_leg.y - 2 * sy_);
     Vec3 leg = foot + (upper_leg - foot) * 0.45;
     leg.z = (foot.z + upper_leg.z) / 2 - 0.3 * s * r_;
     points.push_back(point(id, LoopPart::foot, turn * foot));
     points.push_back(point(id, LoopPart::leg, turn * leg));
     points.push_back(point(id, LoopPart::leg, turn * upper_leg));
-    points.push_back(point(id, LoopPart::leg, at_upper(id, side * 3.3, 0, head)));
-    points.push_back(point(id, LoopPart::head, at_upper(id, side * 1.6, 1.7, head - crossing_reach * c)));
+    points.push_back(point(id, LoopPart::leg, at_upper(id, side * wide, 0, head)));
+    points.push_back(point(id, LoopPart::head, at_upper(id, side * (wide - 1.7), 1.7, head - crossing_reach * c)));
   }
 
   const YarnGraph& graph_;

@@ -107,7 +107,7 @@ class LoopPlacer {
     points.push_back(
         point(id, LoopPart::leg,
               at_lower(id, side * (1.444 + spread), 1.556, sign.lower_leg + low_share * sign.leg_offset)));
-    if (std::abs(leaning(own)) > 0.4 && steepness(own) < 0.3) {
+    if (std::abs(leaning(own)) > 0.4 && is_flat_lying(own)) {
       flat_legs(id, side, points);
       return;
     }
@@ -158,6 +158,18 @@ class LoopPlacer {
     head_half(id, side, head + high_share * sign.leg_offset, points);
   }
 
+  // Whether a loop that leans lies flat, as in the chain of a bind-off.
+  static bool is_flat_lying(const Ends& own) { return steepness(own) < 0.3; }
+
+  // Whether a loop is drawn through one that stands upright and leans away from where `ahead` points.
+  bool meets_parent(LoopId id, double ahead) const {
+    const std::vector<LoopId>& parents = graph_.loop(id).parents;
+    return std::any_of(parents.begin(), parents.end(), [&](LoopId parent) {
+      const Ends of = ends(parent);
+      return ahead * leaning(of) < -0.4 && !is_flat_lying(of);
+    });
+  }
+
   // A loop that lies flat, as in the chain of a bind-off: head and feet are at one level, and both stand
   // upright on their needles. Its lower leg swings out below the head, its upper leg above the feet; both
   // stay clear of the heads that it was drawn through until they are past them, then they take the layer of
@@ -167,7 +179,10 @@ class LoopPlacer {
     const std::size_t i = id.position();
     const Ends own = ends(id);
     const double lean = leaning(own), ahead = lean > 0 ? 1 : -1, length = 8 * std::abs(lean);
-    const double out = sign.lower_leg + 1.3 * sign.s, in = sign.head_layer + sign.c;
+    const double in = sign.head_layer + sign.c;
+    double out = sign.lower_leg + 1.3 * sign.s;
+    // a parent whose legs come from where the loop goes: the lower leg passes before them
+    if (side * lean > 0 && meets_parent(id, ahead)) out += 1.5 * sign.s;
     const auto leg = [&](double along, double y, double z) {
       const double share = along / length;
       const Vec3 base = own.low + own.step() * share;

@@ -1,3 +1,4 @@
+#include <cstdlib>
 #include "loop_scale/relaxed_layout.hpp"
 
 #include <algorithm>
@@ -5,6 +6,8 @@
 #include <numbers>
 #include <utility>
 
+#include "geometry/fit_fabric.hpp"
+#include "geometry/interlacing.hpp"
 #include "geometry/layout.hpp"
 #include "geometry/type_points.hpp"
 #include "loop_scale/metric_start.hpp"
@@ -117,12 +120,9 @@ bool is_torn(const MassSpringNet& net, const std::vector<Vec3>& start) {
   return torn > few * warps;
 }
 
-// Whether stitches lie on both sides of one cloth: ribs and purls, but no walls of a tube one over the other.
-bool is_folded_sheet(const LoopModel& model) {
-  const auto in_tube = [](std::int8_t wall) { return wall != 0; };
-  const auto odd = [](const Spring& spring) { return spring.rest.z != 0; };
-  return std::none_of(model.wall.begin(), model.wall.end(), in_tube) &&
-         std::any_of(model.net.springs.begin(), model.net.springs.end(), odd);
+// Whether stitches lie on both sides of the cloth.
+bool is_folded(const MassSpringNet& net) {
+  return std::any_of(net.springs.begin(), net.springs.end(), [](const Spring& s) { return s.rest.z != 0; });
 }
 
 // Such a piece laid out by the lengths of its springs instead of its needles, facing as the flat one does on
@@ -138,20 +138,36 @@ std::vector<Vec3> metric_places(const YarnGraph& graph, const LoopModel& model) 
   return places;
 }
 
+// A start without folds, and how the sheet differs from the net: springs over second neighbours so many times
+// as stiff, so much more damping.
+struct Start {
+  std::vector<Vec3> places;
+  double stiffer = 1, damping = 1;
+};
+constexpr double slow = 5;
+
+struct FoldedSheet {
+  std::vector<Vec3> places;
+  SettleResult result;  // of the sheet
+};
+
 // From a start without folds to one with them: the piece comes to rest as a sheet, whose springs are as long
 // as the folded ones reach along it, then the stitches of the two beds go to their two sides of the sheet.
 // Folded from the start, ribs and purls of a piece that still has far to go fold any way.
-std::vector<Vec3> folded_sheet(const YarnGraph& graph, const LoopModel& model, const std::vector<Vec3>& start,
-                               const SettleOptions& settling) {
+FoldedSheet folded_sheet(const YarnGraph& graph, const LoopModel& model, const Start& start,
+                         const SettleOptions& settling) {
   MassSpringNet sheet = model.net;
   for (Spring& spring : sheet.springs) {
     const Vec3 along{spring.rest.x, spring.rest.y, 0};
     if (norm(along) > 0.1 * norm(spring.rest)) spring.rest = along;
+    if (spring.kind == SpringKind::bend) spring.stiffness *= start.stiffer;
   }
-  NetState state = state_at_rest(start);
+  sheet.damping *= start.damping;
+  NetState state = state_at_rest(start.places);
   NetKernel kernel(sheet);
-  settle(kernel, sheet, state, settling);
-  std::vector<Vec3> places = positions_of(state);
+  FoldedSheet result{{}, settle(kernel, sheet, state, settling)};
+  std::vector<Vec3>& places = result.places;
+  places = positions_of(state);
   const std::vector<Rotation> turns = turns_of(graph, model, places);
   double depth[3] = {0, 0, 0}, count[3] = {0, 0, 0};  // mean z of a wall
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -163,7 +179,25 @@ std::vector<Vec3> folded_sheet(const YarnGraph& graph, const LoopModel& model, c
     const std::size_t w = static_cast<std::size_t>(model.wall[i] + 1);
     places[i] += turns[i].z * (model.start[i].z - depth[w] / count[w]);
   }
-  return places;
+  return result;
+}
+
+// Where a piece starts, and how it comes to rest as a sheet before it folds. Nothing for a sheet without
+// folds: it starts as it is.
+Start start_of(const YarnGraph& graph, const LoopModel& model) {
+  Start start;
+  if (start.places = round_start(graph, model); !start.places.empty()) {
+    start.stiffer = atof(getenv("SB")), start.damping = atof(getenv("SD"));
+    return start;
+  }
+  if (is_torn(model.net, model.start)) start.places = metric_places(graph, model);
+  if (start.places.empty() && is_folded(model.net)) {
+    start.places = model.start;
+    for (std::size_t i = 0; i < start.places.size(); ++i)
+      if (model.wall[i] == 0) start.places[i].z = 0;
+    start.damping = slow;
+  }
+  return start;
 }
 
 }  // namespace
@@ -204,27 +238,35 @@ YarnCurves placed_curves(const YarnGraph& graph, const LoopModel& model, const s
                            placed_layout(graph, model, places));
 }
 
+// A net whose parts are at odds (rows of different heights on the two beds) may roll up or fold where cloth
+// could not, so that yarns change places. If the sheet has more interlacings as the machine knitted them, it
+// is the layout.
+void keep_sheet_if_better(const YarnGraph& graph, const FoldedSheet& sheet, RelaxedLayout& layout) {
+  const auto intact = [&](const YarnCurves& curves) {
+    return check_interlacings(fit_fabric(curves, graph, layout.model.geometry)).intact;
+  };
+  const int at_rest = intact(layout.curves);
+  if (at_rest == static_cast<int>(graph.interlacings.size())) return;
+  YarnCurves curves = placed_curves(graph, layout.model, sheet.places);
+  if (intact(curves) <= at_rest) return;
+  layout.curves = std::move(curves);
+  layout.state = state_at_rest(sheet.places);
+  layout.result = sheet.result;
+  layout.is_sheet = true;
+}
+
 RelaxedLayout relaxed_layout(const YarnGraph& graph, const Program& program, const LoopModelOptions& options,
                              const SettleOptions& settling) {
-  RelaxedLayout layout{build_loop_model(graph, program, options), {}, {}, {}};
+  RelaxedLayout layout{build_loop_model(graph, program, options)};
   LoopModel& model = layout.model;
-  std::vector<Vec3> start = round_start(graph, model);
-  bool is_sheet = !start.empty();
-  if (!is_sheet && is_torn(model.net, model.start)) {
-    start = metric_places(graph, model);
-    is_sheet = !start.empty();
-  }
-  if (!is_sheet && is_folded_sheet(model)) {
-    start = model.start;
-    for (Vec3& place : start) place.z = 0;
-    is_sheet = true;
-  }
-  if (is_sheet) start = folded_sheet(graph, model, start, settling);
-  if (start.empty()) start = model.start;
-  layout.state = state_at_rest(start);
+  const Start start = start_of(graph, model);
+  FoldedSheet sheet{model.start, {}};
+  if (!start.places.empty()) sheet = folded_sheet(graph, model, start, settling);
+  layout.state = state_at_rest(sheet.places);
   NetKernel kernel(model.net);
   layout.result = settle(kernel, model.net, layout.state, settling);
   layout.curves = placed_curves(graph, model, positions_of(layout.state));
+  if (!start.places.empty()) keep_sheet_if_better(graph, sheet, layout);
   // the size where it came to rest, as the first geometry counts it
   const auto reach = [](const std::vector<double>& values) {
     const auto [low, high] = std::minmax_element(values.begin(), values.end());

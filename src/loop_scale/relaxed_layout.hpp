@@ -11,9 +11,12 @@ namespace loopwright {
 
 struct RelaxedLayout {
   LoopModel model;
-  NetState state;
-  SettleResult result;
-  YarnCurves curves;  // at `state`
+  NetState state{};
+  SettleResult result{};
+  YarnCurves curves{};  // at `state`
+  // whether `state` is the folded sheet from which the net was to relax, because more of its interlacings are
+  // right; `result` is the sheet's then
+  bool is_sheet = false;
 };
 
 // What a layout needs beside weft and warp springs: shear, else courses slide along each other; folds;

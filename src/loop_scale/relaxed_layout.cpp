@@ -6,9 +6,8 @@
 #include <numbers>
 #include <utility>
 
-#include "geometry/fit_fabric.hpp"
-#include "geometry/interlacing.hpp"
 #include "geometry/layout.hpp"
+#include "geometry/mend_crossings.hpp"
 #include "geometry/type_points.hpp"
 #include "loop_scale/metric_start.hpp"
 #include "loop_scale/tube_walls.hpp"
@@ -238,23 +237,6 @@ YarnCurves placed_curves(const YarnGraph& graph, const LoopModel& model, const s
                            placed_layout(graph, model, places));
 }
 
-// A net whose parts are at odds (rows of different heights on the two beds) may roll up or fold where cloth
-// could not, so that yarns change places. If the sheet has more interlacings as the machine knitted them, it
-// is the layout.
-void keep_sheet_if_better(const YarnGraph& graph, const FoldedSheet& sheet, RelaxedLayout& layout) {
-  const auto intact = [&](const YarnCurves& curves) {
-    return check_interlacings(fit_fabric(curves, graph, layout.model.geometry)).intact;
-  };
-  const int at_rest = intact(layout.curves);
-  if (at_rest == static_cast<int>(graph.interlacings.size())) return;
-  YarnCurves curves = placed_curves(graph, layout.model, sheet.places);
-  if (intact(curves) <= at_rest) return;
-  layout.curves = std::move(curves);
-  layout.state = state_at_rest(sheet.places);
-  layout.result = sheet.result;
-  layout.is_sheet = true;
-}
-
 RelaxedLayout relaxed_layout(const YarnGraph& graph, const Program& program, const LoopModelOptions& options,
                              const SettleOptions& settling) {
   RelaxedLayout layout{build_loop_model(graph, program, options)};
@@ -265,8 +247,23 @@ RelaxedLayout relaxed_layout(const YarnGraph& graph, const Program& program, con
   layout.state = state_at_rest(sheet.places);
   NetKernel kernel(model.net);
   layout.result = settle(kernel, model.net, layout.state, settling);
-  layout.curves = placed_curves(graph, model, positions_of(layout.state));
-  if (!start.places.empty()) keep_sheet_if_better(graph, sheet, layout);
+  const Layout flat = lay_out(graph, model.geometry);
+  Layout placed = placed_layout(graph, model, positions_of(layout.state));
+  const auto wrong = [&](const Layout& of) { return wrong_interlacings(graph, model.geometry, flat, of); };
+  // A net whose parts are at odds (rows of different heights on the two beds) may roll up or fold where cloth
+  // could not, so that yarns change places. If the sheet has fewer wrong interlacings, it is the layout.
+  if (!start.places.empty()) {
+    Layout of_sheet = placed_layout(graph, model, sheet.places);
+    if (wrong(of_sheet) < wrong(placed)) {
+      placed = std::move(of_sheet);
+      layout.state = state_at_rest(sheet.places);
+      layout.result = sheet.result;
+      layout.is_sheet = true;
+    }
+  }
+  MendedLayout mended = mended_layout(graph, model.geometry, flat, std::move(placed));
+  layout.wrong = mended.wrong;
+  layout.curves = build_yarn_curves(graph, model.geometry, flat, std::move(mended.layout));
   // the size where it came to rest, as the first geometry counts it
   const auto reach = [](const std::vector<double>& values) {
     const auto [low, high] = std::minmax_element(values.begin(), values.end());

@@ -17,6 +17,7 @@ struct RelaxedLayout {
   // whether `state` is the folded sheet from which the net was to relax, because more of its interlacings are
   // right; `result` is the sheet's then
   bool is_sheet = false;
+  int wrong = 0;  // interlacings that are not as the machine knitted them, of all
 };
 
 // What a layout needs beside weft and warp springs: shear, else courses slide along each other; folds;

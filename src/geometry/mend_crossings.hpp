@@ -1,8 +1,8 @@
 // Crossings that the template leaves wrong are drawn anew until they are right.
 //
-// The template has shares that nothing fixes exactly: how far a crossing tilts with its legs, how high and wide
-// it is where there is little room, how it turns where cloth is folded sharply. One choice serves nearly all
-// crossings of a piece; at the few where the interlacing check says no, others are tried.
+// The template has shares that nothing fixes exactly: how far a crossing tilts with its legs, how high and
+// wide it is where there is little room, how it turns where cloth is folded sharply. One choice serves nearly
+// all crossings of a piece; at the few where the interlacing check says no, others are tried.
 #pragma once
 #include "geometry/type_points.hpp"
 

@@ -250,7 +250,8 @@ class LoopPlacer {
     points.push_back(point(id, LoopPart::leg, turn * leg));
     points.push_back(point(id, LoopPart::leg, turn * upper_leg));
     points.push_back(point(id, LoopPart::leg, at_upper(id, side * wide, 0, head)));
-    points.push_back(point(id, LoopPart::head, at_upper(id, side * (wide - 1.7), 1.7, head - crossing_reach * c)));
+    points.push_back(
+        point(id, LoopPart::head, at_upper(id, side * (wide - 1.7), 1.7, head - crossing_reach * c)));
   }
 
   const YarnGraph& graph_;

@@ -1,4 +1,3 @@
-#include <cstdlib>
 #include "loop_scale/relaxed_layout.hpp"
 
 #include <algorithm>
@@ -137,13 +136,11 @@ std::vector<Vec3> metric_places(const YarnGraph& graph, const LoopModel& model) 
   return places;
 }
 
-// A start without folds, and how the sheet differs from the net: springs over second neighbours so many times
-// as stiff, so much more damping.
+// A start without folds, and the damping of its sheet over the net's.
 struct Start {
   std::vector<Vec3> places;
-  double stiffer = 1, damping = 1;
+  double damping = 1;
 };
-constexpr double slow = 5;
 
 struct FoldedSheet {
   std::vector<Vec3> places;
@@ -159,7 +156,6 @@ FoldedSheet folded_sheet(const YarnGraph& graph, const LoopModel& model, const S
   for (Spring& spring : sheet.springs) {
     const Vec3 along{spring.rest.x, spring.rest.y, 0};
     if (norm(along) > 0.1 * norm(spring.rest)) spring.rest = along;
-    if (spring.kind == SpringKind::bend) spring.stiffness *= start.stiffer;
   }
   sheet.damping *= start.damping;
   NetState state = state_at_rest(start.places);
@@ -185,16 +181,14 @@ FoldedSheet folded_sheet(const YarnGraph& graph, const LoopModel& model, const S
 // folds: it starts as it is.
 Start start_of(const YarnGraph& graph, const LoopModel& model) {
   Start start;
-  if (start.places = round_start(graph, model); !start.places.empty()) {
-    start.stiffer = atof(getenv("SB")), start.damping = atof(getenv("SD"));
-    return start;
-  }
-  if (is_torn(model.net, model.start)) start.places = metric_places(graph, model);
+  start.places = round_start(graph, model);
+  if (start.places.empty() && is_torn(model.net, model.start)) start.places = metric_places(graph, model);
   if (start.places.empty() && is_folded(model.net)) {
     start.places = model.start;
     for (std::size_t i = 0; i < start.places.size(); ++i)
       if (model.wall[i] == 0) start.places[i].z = 0;
-    start.damping = slow;
+    // slowly: what overshoots in a plane passes through itself
+    start.damping = 5;
   }
   return start;
 }

@@ -196,7 +196,7 @@ class Mender {
 }  // namespace
 
 MendedLayout mended_layout(const YarnGraph& graph, const GeometryOptions& options, const Layout& flat,
-                           Layout layout) {
+                           Layout layout, int most_rounds) {
   Mender mender(graph, options, flat, layout);
   MendedLayout mended{std::move(layout)};
   std::set<Pair> left = mender.wrong(mended.layout, mender.whole());
@@ -204,10 +204,10 @@ MendedLayout mended_layout(const YarnGraph& graph, const GeometryOptions& option
   // Trials look at the loops round the wrong ones, then the whole piece says what they came to: cut out,
   // yarns are sampled at other places, and a narrow pass may be seen otherwise. What is left after that is
   // tried on the whole piece.
-  constexpr int most_rounds = 400;
   for (bool on_whole = false; !left.empty() && mended.rounds < most_rounds;) {
     Layout trial = mended.layout;
-    mender.improve(trial, on_whole ? mender.whole() : mender.near(left), on_whole ? 40 : 100, mended.rounds);
+    mender.improve(trial, on_whole ? mender.whole() : mender.near(left),
+                   on_whole ? most_rounds / 8 : most_rounds / 4, mended.rounds);
     std::set<Pair> still = mender.wrong(trial, mender.whole());
     if (still.size() < left.size()) {
       mended.layout = std::move(trial);

@@ -15,10 +15,10 @@ struct MendedLayout {
 };
 
 // Only the template's tilt, height, width and turn at binding points of wrong interlacings change, no place.
-// The same every time. One check of the piece where nothing is wrong; else a few hundred rounds at most, each
-// O(loops).
+// The same every time. One check of the piece where nothing is wrong; else up to `most_rounds` rounds of
+// trials, each O(loops), until a quarter of them were in vain.
 MendedLayout mended_layout(const YarnGraph& graph, const GeometryOptions& options, const Layout& flat,
-                           Layout layout);
+                           Layout layout, int most_rounds = 120);
 
 // How many interlacings of the whole piece are not as the machine knitted them.
 int wrong_interlacings(const YarnGraph& graph, const GeometryOptions& options, const Layout& flat,

@@ -255,7 +255,8 @@ RelaxedLayout relaxed_layout(const YarnGraph& graph, const Program& program, con
       layout.is_sheet = true;
     }
   }
-  MendedLayout mended = mended_layout(graph, model.geometry, flat, std::move(placed));
+  constexpr int most_trials = 400;  // few beside the steps to rest
+  MendedLayout mended = mended_layout(graph, model.geometry, flat, std::move(placed), most_trials);
   layout.wrong = mended.wrong;
   layout.curves = build_yarn_curves(graph, model.geometry, flat, std::move(mended.layout));
   // the size where it came to rest, as the first geometry counts it

@@ -11,6 +11,7 @@
 #include "geometry/start_from_cell.hpp"
 #include "geometry/window.hpp"
 #include "machine/run_machine.hpp"
+#include "mechanics/tiled_history.hpp"
 #include "mechanics/yarn_material.hpp"
 #include "notation/read_program.hpp"
 #include "topology/build_yarn_graph.hpp"
@@ -116,7 +117,7 @@ Fabric first_geometry(const Knitting& knitting, const PieceRequest& request) {
   if (knitting.graph.loops.empty()) throw std::invalid_argument("nothing was knitted: there is no loop");
   const GeometryOptions options = make_geometry_options(knitting.program);
   const WantedPart part = wanted_part(knitting, request, options);
-  Fabric fabric = fit_fabric(part.curves, knitting.graph, options);
+  Fabric fabric = fit_fabric(part.curves, knitting.graph, options, {request.segments_per_loop});
   if (!part.inside.empty())
     std::erase_if(fabric.loops,
                   [&part](const LoopSpan& span) { return part.inside[span.loop.position()] == 0; });
@@ -137,7 +138,7 @@ RelaxOptions relax_options(const Fabric& fabric, const Program& program, const P
 }
 
 std::optional<Fabric> start_from_relaxed_cell(const Knitting& knitting, const PieceRequest& request,
-                                              const Fabric& first, const RelaxOptions& options) {
+                                              const Fabric& first, RelaxOptions& options) {
   const Program& program = knitting.program;
   if (first.periodic || request.window || program.window.needles == 0 || program.repeat_starts.size() < 2)
     return std::nullopt;
@@ -147,7 +148,8 @@ std::optional<Fabric> start_from_relaxed_cell(const Knitting& knitting, const Pi
   try {
     range = cell_range(program);
     const PlacedPiece piece = place_type_points(knitting.graph, geometry);
-    cell = fit_fabric(cut_periodic_cell(knitting.graph, geometry, piece, range), knitting.graph, geometry);
+    cell = fit_fabric(cut_periodic_cell(knitting.graph, geometry, piece, range), knitting.graph, geometry,
+                      {request.segments_per_loop});
   } catch (const std::invalid_argument&) {
     return std::nullopt;  // the notation does not close into a cell
   }
@@ -155,7 +157,11 @@ std::optional<Fabric> start_from_relaxed_cell(const Knitting& knitting, const Pi
   cell_options.grow_in = true;
   const RelaxResult relaxed = relax(*cell, cell_options);
   if (!relaxed.converged) return std::nullopt;
-  return start_from_cell(first, relaxed.fabric, knitting.graph, range);
+  std::optional<StartFromCell> start = start_from_cell(first, relaxed.fabric, knitting.graph, range);
+  if (!start) return std::nullopt;
+  options.grow_in = false;
+  options.history = tiled_history(relaxed.fabric, relaxed.history, *start);
+  return std::move(start->fabric);
 }
 
 RelaxOptions relax_options(const State& state) {

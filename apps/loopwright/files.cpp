@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "experiments/modes.hpp"
 #include "outputs/atomic_file.hpp"
 #include "outputs/state.hpp"
 #include "outputs/write_fabric.hpp"
@@ -48,10 +49,8 @@ std::optional<Piece> read_piece(const std::string& file, const PieceRequest& req
       Fabric fabric = first_geometry(knitting, request);
       RelaxOptions options = relax_options(fabric, knitting.program, request);
       if (request.start_from_cell)
-        if (std::optional<Fabric> started = start_from_relaxed_cell(knitting, request, fabric, options)) {
+        if (std::optional<Fabric> started = start_from_relaxed_cell(knitting, request, fabric, options))
           fabric = std::move(*started);
-          options.grow_in = false;
-        }
       piece = Piece{saved_state(fabric, options, options.grow_in ? 0 : 1), options};
     } catch (const std::invalid_argument& fault) {
       diagnostics.error({}, fault.what());
@@ -105,6 +104,25 @@ bool say_if_broken(const std::string& file, const Assessment& assessment, int pa
   std::cerr << file << ": error: broken: " << check.intact << " of " << check.expected
             << " interlacings intact, " << pass_throughs << " pass-throughs\n";
   return true;
+}
+
+void tell_stability(const std::string& file, const Fabric& fabric, const RelaxOptions& options, int modes,
+                    JsonObject& all, std::ostream& out) {
+  const Stability found = stability(fabric, options.model, modes);
+  JsonArray list;
+  std::ostringstream line;
+  line.precision(3);
+  line << file << ": " << (found.stable ? "stable" : "unstable") << " without friction, lowest modes (B/d^4)";
+  for (const Mode& mode : found.modes) {
+    list.emplace_back(JsonObject{{"lambda_B_d4", mode.lambda}, {"along", mode.along}});
+    line << ' ' << mode.lambda << (mode.along > 0.5 ? " (slides)" : "");
+  }
+  all.emplace_back("stable", found.stable);
+  all.emplace_back("modes", std::move(list));
+  if (found.sizes)
+    all.emplace_back("size_eigenvalues_B_d3", std::vector<double>(found.sizes->begin(), found.sizes->end()));
+  if (found.sizes && (*found.sizes)[0] <= 0) line << "; the cell changes its size or shears by itself";
+  out << line.str() << '\n';
 }
 
 }  // namespace loopwright

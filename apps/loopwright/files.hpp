@@ -37,4 +37,9 @@ std::string summary(const Assessment& assessment);
 // Says on standard error if the cloth is not what the machine knitted; then its results are worth nothing.
 bool say_if_broken(const std::string& file, const Assessment& assessment, int pass_throughs);
 
+// The lowest modes of cloth at rest and whether it is stable without friction: added to `all`, and said on
+// `out` in a line.
+void tell_stability(const std::string& file, const Fabric& fabric, const RelaxOptions& options, int modes,
+                    JsonObject& all, std::ostream& out);
+
 }  // namespace loopwright

@@ -20,9 +20,11 @@ int run(const MeasureCommand& command) {
     if (number(key) != none) all.emplace_back(key, static_cast<long long>(number(key)->second));
   if (number("converged") != none) all.emplace_back("converged", number("converged")->second != 0);
   if (number("residual") != none) all.emplace_back("residual", number("residual")->second);
-  if (!command.json.empty()) write_json(command.json, all);
-
   people(command.json) << command.file << ": " << summary(assessment) << '\n';
+  if (command.modes > 0)
+    tell_stability(command.file, state.fabric, relax_options(state), command.modes, all,
+                   people(command.json));
+  if (!command.json.empty()) write_json(command.json, all);
   const int pass_throughs =
       number("pass_throughs") != none ? static_cast<int>(number("pass_throughs")->second) : 0;
   return say_if_broken(command.file, assessment, pass_throughs) ? exit_error : exit_good;

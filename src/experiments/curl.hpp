@@ -1,0 +1,30 @@
+// How cloth that nothing holds flat curls: curvature along its courses and its wales, from where its loops
+// are.
+#pragma once
+#include <vector>
+
+#include "geometry/fabric.hpp"
+
+namespace loopwright {
+
+// Curvature of the cloth at a loop, 1/d: positive where it bends toward the side that front stitches show as
+// their face (+z of the flat cloth). Along the course: the sides roll up; along the wale: top and bottom do.
+struct LoopCurvature {
+  LoopId loop;
+  double course = 0, wale = 0;
+};
+
+// Of every loop with two neighbours on all four sides (finite pieces, knitted loops). The loop's place is the
+// middle of its span; a curvature is the second difference of places two loops apart (so that stitches of
+// both beds in turn do not count as waves) across the cloth's normal, over the squared mean distance.
+std::vector<LoopCurvature> loop_curvatures(const Fabric& fabric);
+
+struct Curl {
+  double course = 0, wale = 0;              // mean curvature, 1/d
+  double course_error = 0, wale_error = 0;  // standard deviation over loops by the root of their number
+  int loops = 0;
+};
+// Throws std::invalid_argument if no loop has two neighbours on all sides (fewer than 5 x 5).
+Curl curl(const Fabric& fabric);
+
+}  // namespace loopwright

@@ -3,7 +3,7 @@
 #pragma once
 #include <vector>
 
-#include "geometry/fabric.hpp"
+#include "mechanics/yarn_model.hpp"
 
 namespace loopwright {
 
@@ -26,5 +26,18 @@ struct Curl {
 };
 // Throws std::invalid_argument if no loop has two neighbours on all sides (fewer than 5 x 5).
 Curl curl(const Fabric& fabric);
+
+// What makes a flat cloth curl: the moments that a periodic cell would need to stay flat, as the slope of its
+// energy when the plane is bent to a cylinder, dW/dkappa at kappa = 0 (W: energy per area; kappa as above).
+// Below zero: the cloth wants to bend toward the face. Unit B/d^2, times B/d^2 in N a moment per length of
+// cloth.
+struct CurlMoment {
+  double course = 0, wale = 0;
+};
+// Exact at the cell's flat state: every piece of yarn and every contact is bent with u = kappa (-x z, 0,
+// x^2/2), in patches of several repeats; a second difference over the patches' sizes takes their edges away.
+// Friction and plates are left out. Throws std::invalid_argument for a fabric that is not periodic or whose
+// yarns do not close after one repeat along their course.
+CurlMoment curl_moment(const Fabric& cell, const ModelOptions& options);
 
 }  // namespace loopwright

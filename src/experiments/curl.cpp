@@ -15,9 +15,10 @@ struct LoopNet {
   std::vector<Vec3> place;
   std::vector<int> left, right, below, above;
 
-  int two(const std::vector<int>& way, std::size_t from) const {
-    const int one = way[from];
-    return one == none ? none : way[static_cast<std::size_t>(one)];
+  static int reached(const std::vector<int>& way, std::size_t from, int steps) {
+    int at = static_cast<int>(from);
+    for (int k = 0; k < steps && at != none; ++k) at = way[static_cast<std::size_t>(at)];
+    return at;
   }
 };
 
@@ -66,12 +67,13 @@ LoopNet net_of(const Fabric& fabric) {
 
 }  // namespace
 
-std::vector<LoopCurvature> loop_curvatures(const Fabric& fabric) {
+std::vector<LoopCurvature> loop_curvatures(const Fabric& fabric, int apart) {
+  if (apart < 1) throw std::invalid_argument("curvature needs loops that are one or more apart");
   const LoopNet net = net_of(fabric);
   std::vector<LoopCurvature> all;
   for (std::size_t k = 0; k < net.place.size(); ++k) {
-    const int left = net.two(net.left, k), right = net.two(net.right, k), below = net.two(net.below, k),
-              above = net.two(net.above, k);
+    const int left = net.reached(net.left, k, apart), right = net.reached(net.right, k, apart),
+              below = net.reached(net.below, k, apart), above = net.reached(net.above, k, apart);
     if (left == none || right == none || below == none || above == none) continue;
     const auto at = [&](int loop) { return net.place[static_cast<std::size_t>(loop)]; };
     const Vec3 course = at(right) - at(left), wale = at(above) - at(below), here = net.place[k];
@@ -85,10 +87,10 @@ std::vector<LoopCurvature> loop_curvatures(const Fabric& fabric) {
   return all;
 }
 
-Curl curl(const Fabric& fabric) {
-  const std::vector<LoopCurvature> loops = loop_curvatures(fabric);
+Curl curl(const Fabric& fabric, int apart) {
+  const std::vector<LoopCurvature> loops = loop_curvatures(fabric, apart);
   if (loops.empty())
-    throw std::invalid_argument("curl needs loops with two neighbours on every side: 5 x 5 at least");
+    throw std::invalid_argument("curl needs loops with neighbours on every side: 5 x 5 at least");
   Curl mean;
   mean.loops = static_cast<int>(loops.size());
   double course2 = 0, wale2 = 0;

@@ -24,8 +24,8 @@ struct Curl {
   double course_error = 0, wale_error = 0;  // standard deviation over loops by the root of their number
   int loops = 0;
 };
-// Throws std::invalid_argument if no loop has two neighbours on all sides (fewer than 5 x 5).
-Curl curl(const Fabric& fabric);
+// Throws std::invalid_argument if no loop has so many neighbours on all sides (for 2: fewer than 5 x 5).
+Curl curl(const Fabric& fabric, int apart = 2);
 
 // What makes a flat cloth curl: the moments that a periodic cell would need to stay flat, as the slope of its
 // energy when the plane is bent to a cylinder, dW/dkappa at kappa = 0 (W: energy per area; kappa as above).

@@ -14,10 +14,11 @@ struct LoopCurvature {
   double course = 0, wale = 0;
 };
 
-// Of every loop with two neighbours on all four sides (finite pieces, knitted loops). The loop's place is the
-// middle of its span; a curvature is the second difference of places two loops apart (so that stitches of
-// both beds in turn do not count as waves) across the cloth's normal, over the squared mean distance.
-std::vector<LoopCurvature> loop_curvatures(const Fabric& fabric);
+// Of every loop with `apart` neighbours on all four sides (finite pieces, knitted loops). The loop's place is
+// the middle of its span; a curvature is the second difference of places so many loops apart across the
+// cloth's normal, over the squared mean distance. 2, so that stitches of both beds in turn do not count as
+// waves; 1 goes nearer to the edges of plain.
+std::vector<LoopCurvature> loop_curvatures(const Fabric& fabric, int apart = 2);
 
 struct Curl {
   double course = 0, wale = 0;              // mean curvature, 1/d

@@ -1,6 +1,5 @@
-// A piece of cloth with its first courses on a table and the others over its edge, under its weight; and hung
-// from its last loops, as on the needles. study_drape [STRUCTURE [WALES COURSES]] prints a table and leaves
-// pictures.
+// A piece of cloth with its first courses on a table and the others over its edge, under its weight.
+// study_drape [STRUCTURE [WALES COURSES [FRICTION]]] prints a table and leaves a picture.
 #include "experiments/drape.hpp"
 
 #include <algorithm>
@@ -10,6 +9,7 @@
 #include <iostream>
 #include <string>
 
+#include "experiments/piece_size.hpp"
 #include "outputs/image.hpp"
 #include "outputs/render.hpp"
 #include "outputs/write_fabric.hpp"
@@ -102,7 +102,7 @@ int main(int argc, char** argv) {
       << letters << "\n";
   Diagnostics diagnostics(file);
   PieceRequest request;
-  request.friction = 0.4;
+  request.friction = argc > 4 ? std::stod(argv[4]) : 0.4;
   const Knitting knitting = knit(file, request, diagnostics);
   if (!diagnostics.ok()) {
     std::cerr << diagnostics;
@@ -133,6 +133,8 @@ int main(int argc, char** argv) {
     if (heights[i] > top - 2) tip.push_back(i);
   const double before = mean_height(rest.result.fabric, tip);
   tell("on the table, no weight", rest, 0, overhang_mm);
+  const PieceSize size = piece_size(flat.fabric);
+  std::printf("width %.2f mm, overhang %.2f mm\n", size.width * d_mm, overhang_mm);
 
   const YarnMaterial& material = options.model.material;
   for (const double times : {1.0, 10.0, 30.0}) {
@@ -152,12 +154,5 @@ int main(int argc, char** argv) {
     tell("   3/8 of what overhangs at the tip", pulled, tip_sag, overhang_mm);
     if (times == 30) picture(own.result.fabric, "drape_table.png", View::left);
   }
-
-  // Hung from its last loops.
-  RelaxResult hung = flat;
-  hold(hung.fabric, [&](const Vec3& p) { return p.y > top - 1; });
-  const Loaded down = loaded(hung, options, weight_loads(hung.fabric, material, {0, -earth, 0}), 4);
-  tell("hung from its last loops, 1 g", down, 0, overhang_mm);
-  picture(down.result.fabric, "drape_hung.png", View::corner);
   return 0;
 }

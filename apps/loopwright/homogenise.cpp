@@ -140,12 +140,8 @@ int run(const HomogeniseCommand& command) {
   if (command.csv == "-" && command.json == "-")
     throw std::invalid_argument("CSV and JSON cannot both go to standard output");
   StrainGrid grid{with_zero(command.course), with_zero(command.wale), with_zero(command.shear), command.step};
-  PieceRequest request = command.piece;
-  if (names_a_state(command.file)) request = {};
-  std::optional<Piece> piece = read_piece(command.file, request);
+  const std::optional<Piece> piece = read_elastic_piece(command.file, command.piece);
   if (!piece) return exit_error;
-  piece->options.model.material.friction = 0;
-  piece->options.model.sample_spacing = fine_samples;
   set_thread_count(command.threads);
 
   const InterruptGuard guard;

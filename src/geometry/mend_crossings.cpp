@@ -207,7 +207,7 @@ MendedLayout mended_layout(const YarnGraph& graph, const GeometryOptions& option
   for (bool on_whole = false; !left.empty() && mended.rounds < most_rounds;) {
     Layout trial = mended.layout;
     mender.improve(trial, on_whole ? mender.whole() : mender.near(left),
-                   on_whole ? most_rounds / 8 : most_rounds / 4, mended.rounds);
+                   std::max(on_whole ? 20 : 40, most_rounds / (on_whole ? 10 : 4)), mended.rounds);
     std::set<Pair> still = mender.wrong(trial, mender.whole());
     if (still.size() < left.size()) {
       mended.layout = std::move(trial);
@@ -228,8 +228,10 @@ int wrong_interlacings(const YarnGraph& graph, const GeometryOptions& options, c
 }
 
 PlacedPiece mended_piece(const YarnGraph& graph, const GeometryOptions& options) {
+  constexpr int most_trials = 60;  // a first geometry is to be had in seconds
   const Layout flat = lay_out(graph, options);
-  return place_type_points(graph, options, flat, mended_layout(graph, options, flat, flat).layout);
+  return place_type_points(graph, options, flat,
+                           mended_layout(graph, options, flat, flat, most_trials).layout);
 }
 
 }  // namespace loopwright

@@ -16,7 +16,7 @@ struct MendedLayout {
 
 // Only the template's tilt, height, width and turn at binding points of wrong interlacings change, no place.
 // The same every time. One check of the piece where nothing is wrong; else up to `most_rounds` rounds of
-// trials, each O(loops), until a quarter of them were in vain.
+// trials, each O(loops), until 40 or a quarter of them were in vain.
 MendedLayout mended_layout(const YarnGraph& graph, const GeometryOptions& options, const Layout& flat,
                            Layout layout, int most_rounds = 120);
 

@@ -102,6 +102,7 @@ int run(const RelaxCommand& command) {
   if (command.most_iterations) piece->options.most_iterations = *command.most_iterations;
   set_thread_count(command.threads);
 
+  const std::vector<LinkedPair> linked_before = linking_numbers(piece->state.fabric);
   RelaxRun run = relax_watched(*piece, piece->options);
   add_earlier_counts(piece->state, run.result);
   const RelaxResult& relaxed = run.result;
@@ -121,7 +122,11 @@ int run(const RelaxCommand& command) {
        << " Newton steps, " << wall_s << " s\n";
   people(command.json) << line.str();
 
-  const bool broken = say_if_broken(command.file, assessment, relaxed.pass_throughs);
+  bool broken = say_if_broken(command.file, assessment, relaxed.pass_throughs);
+  if (assessment.linked != linked_before) {
+    std::cerr << command.file << ": error: broken: rings are linked otherwise than before\n";
+    broken = true;
+  }
   if (!command.render.empty() && !relaxed.stopped) write_png(command.render, render(relaxed.fabric, picture));
   if (relaxed.stopped) {
     std::cerr << command.file << ": stopped; what was reached is in " << command.out;

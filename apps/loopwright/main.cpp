@@ -294,7 +294,7 @@ void add_commands(CLI::App& app, Commands& commands, Action& action) {
       ->type_name("CxR")
       ->capture_default_str();
   export_->add_flag("--quadratic", commands.export_.options.quadratic_beams,
-                    "Beam elements of three nodes (B32), not of two (B31)");
+                    "Beam elements of three nodes (B32), as CalculiX always gets them");
   add_piece_options(*export_, commands.export_.piece);
   add_curve_options(*export_, commands.export_.piece);
   export_->callback([&] { action = [&] { return run(commands.export_); }; });

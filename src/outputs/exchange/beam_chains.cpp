@@ -110,8 +110,7 @@ void put_on_faces(const Fabric& fabric, BeamChains& all) {
     at_origin.x = at_origin.y / fabric.height * fabric.skew;
   else
     at_origin.y = 0;
-  all.chains[far.chain].places[far.node] =
-      at_origin + (across ? fabric.lattice(1, 0) : fabric.lattice(0, 1));
+  all.chains[far.chain].places[far.node] = at_origin + (across ? fabric.lattice(1, 0) : fabric.lattice(0, 1));
 }
 
 void add_periodic(const Fabric& fabric, std::size_t yarn, const ExportOptions& options, BeamChains& all) {

@@ -12,13 +12,15 @@ Vec3 place_on(const BezierPiece& b, double u) {
   return b[0] * (v * v * v) + b[1] * (3 * v * v * u) + b[2] * (3 * v * u * u) + b[3] * (u * u * u);
 }
 
-// Calls add(p0, p1, p2, p3) for every four neighbouring points, round the seam of a closed curve.
+// Calls add(p0, p1, p2, p3) for every four neighbouring points, round the seam of a closed curve; there the
+// first four begin at point `first`.
 template <class Add>
-void each_four(const FileCurve& curve, Add add) {
+void each_four(const FileCurve& curve, std::size_t first, Add add) {
   const std::size_t n = curve.points.size();
   if (n < 4 && !(curve.closed && n == 3)) return;
   const std::size_t pieces = curve.closed ? n : n - 3;
-  const auto at = [&](std::size_t k) -> const Vec3& { return curve.points[k % n]; };
+  const std::size_t shift = curve.closed ? first : 0;
+  const auto at = [&](std::size_t k) -> const Vec3& { return curve.points[(k + shift) % n]; };
   for (std::size_t k = 0; k < pieces; ++k) add(at(k), at(k + 1), at(k + 2), at(k + 3));
 }
 
@@ -80,12 +82,14 @@ std::vector<BezierPiece> bezier_pieces(CurveBasis basis, const FileCurve& curve)
     case CurveBasis::midpoint_quadratic:
       return midpoint_pieces(curve);
     case CurveBasis::catmull_rom:
-      each_four(curve, [&](const Vec3& p0, const Vec3& p1, const Vec3& p2, const Vec3& p3) {
-        pieces.push_back({p1, p1 + (p2 - p0) / 6, p2 - (p3 - p1) / 6, p2});
-      });
+      // so that the curve begins at its first point
+      each_four(curve, curve.points.size() - 1,
+                [&](const Vec3& p0, const Vec3& p1, const Vec3& p2, const Vec3& p3) {
+                  pieces.push_back({p1, p1 + (p2 - p0) / 6, p2 - (p3 - p1) / 6, p2});
+                });
       return pieces;
     case CurveBasis::bspline:
-      each_four(curve, [&](const Vec3& p0, const Vec3& p1, const Vec3& p2, const Vec3& p3) {
+      each_four(curve, 0, [&](const Vec3& p0, const Vec3& p1, const Vec3& p2, const Vec3& p3) {
         pieces.push_back(
             {(p0 + p1 * 4 + p2) / 6, (p1 * 2 + p2) / 3, (p1 + p2 * 2) / 3, (p1 + p2 * 4 + p3) / 6});
       });

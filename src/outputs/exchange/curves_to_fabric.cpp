@@ -14,7 +14,7 @@ namespace {
 
 // The yarn's segments, in d: the first step that is tried, how close the yarn is to come to its curve, and
 // where trying ends.
-constexpr double first_step = 1.25, close_enough = 0.02, least_step = 0.5;
+constexpr double first_step = 1.25, close_enough = 0.01, least_step = 0.5;
 constexpr double most_segments = 2e7;  // of all yarns: some gigabytes
 
 struct Placed {

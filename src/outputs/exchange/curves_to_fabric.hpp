@@ -23,7 +23,7 @@ struct CurveFabric {
 };
 
 // Each curve becomes one yarn, sampled at equal steps of arc length and interpolated; a closed one a periodic
-// yarn without shift. Steps are small enough that the yarn departs from its curve by less than 2 % of a
+// yarn without shift. Steps are small enough that the yarn departs from its curve by less than 1 % of a
 // diameter, where half a diameter suffices for that. Loops and interlacings are not known. Ends of open yarns
 // are held. The unloaded length is the curve's length. Where z points up in the file, it is turned so that y
 // does. Throws std::invalid_argument where a curve is none, or where the diameter is neither said nor to be

@@ -26,6 +26,12 @@ std::string real(double value) {
   return out;
 }
 
+// CalculiX has round beams of three nodes only.
+ExportOptions in_dialect(ExportOptions options, BeamDialect dialect) {
+  options.quadratic_beams = options.quadratic_beams || dialect == BeamDialect::calculix;
+  return options;
+}
+
 class BeamWriter {
  public:
   BeamWriter(std::ostream& out, const State& state, BeamDialect dialect, const ExportOptions& options)
@@ -272,7 +278,7 @@ class BeamWriter {
 void write_beams(const std::filesystem::path& path, const State& state, BeamDialect dialect,
                  const ExportOptions& options) {
   AtomicFile file(path);
-  BeamWriter(file.stream(), state, dialect, options).write();
+  BeamWriter(file.stream(), state, dialect, in_dialect(options, dialect)).write();
   file.commit();
 }
 

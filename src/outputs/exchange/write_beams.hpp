@@ -10,7 +10,7 @@ namespace loopwright {
 enum class BeamDialect { abaqus, calculix };
 
 // The model without a step, to be included by the file that loads it. Units: mm, N, t (MPa, t/mm^3).
-//   elements   B31, or B32 with options.quadratic_beams; ELSET YARN_0, YARN_1, ... and YARNS
+//   elements   B31, or B32 with options.quadratic_beams and for CalculiX; ELSET YARN_0, YARN_1, ... and YARNS
 //   sections   circular, one material a yarn. E is such that the beam bends like the yarn, E pi r^4/4 = B; so
 //              it stretches more easily than the yarn, which a comment says in figures
 //   node sets  EDGE_LEFT, EDGE_RIGHT, EDGE_BOTTOM, EDGE_TOP; YARN_ENDS; HELD

@@ -118,7 +118,7 @@ Fabric first_geometry(const Knitting& knitting, const PieceRequest& request) {
   if (knitting.graph.loops.empty()) throw std::invalid_argument("nothing was knitted: there is no loop");
   const GeometryOptions options = make_geometry_options(knitting.program);
   const WantedPart part = wanted_part(knitting, request, options);
-  Fabric fabric = fit_fabric(part.curves, knitting.graph, options);
+  Fabric fabric = fit_fabric(part.curves, knitting.graph, options, {request.segments_per_loop});
   if (!part.inside.empty())
     std::erase_if(fabric.loops,
                   [&part](const LoopSpan& span) { return part.inside[span.loop.position()] == 0; });
@@ -170,7 +170,8 @@ std::optional<Fabric> start_from_relaxed_cell(const Knitting& knitting, const Pi
   try {
     range = cell_range(program);
     const PlacedPiece piece = place_type_points(knitting.graph, geometry);
-    cell = fit_fabric(cut_periodic_cell(knitting.graph, geometry, piece, range), knitting.graph, geometry);
+    cell = fit_fabric(cut_periodic_cell(knitting.graph, geometry, piece, range), knitting.graph, geometry,
+                      {request.segments_per_loop});
   } catch (const std::invalid_argument&) {
     return std::nullopt;  // the notation does not close into a cell
   }

@@ -44,6 +44,7 @@ struct PieceRequest {
   // states them, and the length of the file's unit.
   std::string curve_yarn{};
   std::optional<double> curve_unit_mm{};
+  double segments_per_loop = 12;  // splines' segments in a loop of the notation's length
 };
 
 // notation -> machine -> topology. What is wrong is said in `diagnostics`; what could be understood is there.

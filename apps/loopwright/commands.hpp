@@ -57,6 +57,26 @@ struct StretchCommand {
 };
 int run(const StretchCommand& command);
 
+// Membrane constants of a cell. Strains of the grid in any order; 0 is always among them.
+struct HomogeniseCommand {
+  std::string file, csv, plot, json;
+  PieceRequest piece{.periodic = true, .friction = 0.0, .segments_per_loop = 24};
+  std::vector<double> course{-0.05, 0.05, 0.1, 0.15, 0.2}, wale{-0.1, -0.05, 0.05, 0.1}, shear{-0.1, 0.1};
+  double course_pull = 0.3, wale_pull = 0.15;  // how far the pulls go to which the law is fitted
+  double step = 0.02;
+  int threads = 0;  // 0: all
+};
+int run(const HomogeniseCommand& command);
+
+// How size and stiffness of a cell depend on its yarn's data. Deviations: KEY=PERCENT.
+struct SensitivityCommand {
+  std::string file, csv, json;
+  PieceRequest piece{.periodic = true, .friction = 0.0, .segments_per_loop = 24};
+  std::vector<std::string> deviations;
+  int threads = 0;  // 0: all
+};
+int run(const SensitivityCommand& command);
+
 struct PictureRequest {
   std::string view = "front";
   std::string size = "1600x1200";  // pixels
@@ -67,6 +87,7 @@ struct RelaxCommand {
   PieceRequest piece{.start_from_cell = true};
   PictureRequest picture;
   int threads = 0;  // 0: all
+  int modes = 0;    // lowest modes to report, and stability
   std::optional<int> most_iterations;
 };
 int run(const RelaxCommand& command);
@@ -116,6 +137,7 @@ int run(const AnimateCommand& command);
 struct MeasureCommand {
   std::string file, json;
   PieceRequest piece;  // of curves: their yarn and unit
+  int modes = 0;
 };
 int run(const MeasureCommand& command);
 

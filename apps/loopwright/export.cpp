@@ -32,12 +32,12 @@ int run(const ExportCommand& command) {
   ExportOptions options = command.options;
   options.repeats = parsed_repeats(command.repeats);
   require_writable(command.out);
-  const std::optional<Piece> piece = read_piece(command.file, command.piece);
-  if (!piece) return exit_error;
-  const Fabric& fabric = piece->state.fabric;
+  const std::optional<State> state = read_fabric(command.file, command.piece);
+  if (!state) return exit_error;
+  const Fabric& fabric = state->fabric;
   if (options.repeats != std::array<int, 2>{1, 1} && !fabric.periodic)
     throw std::invalid_argument(command.file + ": --repeats is for a periodic cell, and this is a piece");
-  write_fabric(command.out, piece->state, format, options);
+  write_fabric(command.out, *state, format, options);
   std::size_t segments = 0;
   for (const FabricYarn& yarn : fabric.yarns) segments += static_cast<std::size_t>(yarn.segments());
   std::cout << command.file << ": " << fabric.yarns.size() << " yarns, " << fabric.loops.size() << " loops, "

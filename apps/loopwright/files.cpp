@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "experiments/modes.hpp"
 #include "outputs/atomic_file.hpp"
 #include "outputs/exchange/curve_file.hpp"
 #include "outputs/state.hpp"
@@ -89,6 +90,13 @@ std::optional<Piece> read_piece(const std::string& file, const PieceRequest& req
   return piece;
 }
 
+std::optional<State> read_fabric(const std::string& file, const PieceRequest& request) {
+  if (names_a_state(file) && !request.periodic && !request.window) return read_state(file);
+  std::optional<Piece> piece = read_piece(file, request);
+  if (!piece) return std::nullopt;
+  return std::move(piece->state);
+}
+
 void require_writable(const std::string& file) {
   // made and taken away again: nothing is left
   if (!file.empty() && file != "-") const AtomicFile probe{std::filesystem::path(file)};
@@ -141,6 +149,25 @@ bool say_if_broken(const std::string& file, const Assessment& assessment, int pa
   std::cerr << file << ": error: broken: " << check.intact << " of " << check.expected
             << " interlacings intact, " << pass_throughs << " pass-throughs\n";
   return true;
+}
+
+void tell_stability(const std::string& file, const Fabric& fabric, const RelaxOptions& options, int modes,
+                    JsonObject& all, std::ostream& out) {
+  const Stability found = stability(fabric, options.model, modes);
+  JsonArray list;
+  std::ostringstream line;
+  line.precision(3);
+  line << file << ": " << (found.stable ? "stable" : "unstable") << " without friction, lowest modes (B/d^4)";
+  for (const Mode& mode : found.modes) {
+    list.emplace_back(JsonObject{{"lambda_B_d4", mode.lambda}, {"along", mode.along}});
+    line << ' ' << mode.lambda << (mode.along > 0.5 ? " (slides)" : "");
+  }
+  all.emplace_back("stable", found.stable);
+  all.emplace_back("modes", std::move(list));
+  if (found.sizes)
+    all.emplace_back("size_eigenvalues_B_d3", std::vector<double>(found.sizes->begin(), found.sizes->end()));
+  if (found.sizes && (*found.sizes)[0] <= 0) line << "; the cell changes its size or shears by itself";
+  out << line.str() << '\n';
 }
 
 }  // namespace loopwright

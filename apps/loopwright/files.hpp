@@ -21,6 +21,9 @@ bool names_a_state(const std::string& file);
 // on standard error; nothing if there was an error.
 std::optional<Piece> read_piece(const std::string& file, const PieceRequest& request);
 
+// The same for who only looks at it: a saved state need not say how it is gone on with.
+std::optional<State> read_fabric(const std::string& file, const PieceRequest& request);
+
 // Throws FileError if a file of that name could not be written, before long work is done for it. Empty and
 // "-" pass.
 void require_writable(const std::string& file);
@@ -36,5 +39,10 @@ std::string summary(const Assessment& assessment);
 
 // Says on standard error if the cloth is not what the machine knitted; then its results are worth nothing.
 bool say_if_broken(const std::string& file, const Assessment& assessment, int pass_throughs);
+
+// The lowest modes of cloth at rest and whether it is stable without friction: added to `all`, and said on
+// `out` in a line.
+void tell_stability(const std::string& file, const Fabric& fabric, const RelaxOptions& options, int modes,
+                    JsonObject& all, std::ostream& out);
 
 }  // namespace loopwright

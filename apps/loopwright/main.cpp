@@ -20,6 +20,8 @@ struct Commands {
   BuildCommand build;
   RelaxCommand relax;
   StretchCommand stretch;
+  HomogeniseCommand homogenise;
+  SensitivityCommand sensitivity;
   RenderCommand render;
   ExportCommand export_;
   AnimateCommand animate;
@@ -88,6 +90,69 @@ void add_loop_options(CLI::App& command, LoopRequest& loop) {
       ->check(CLI::PositiveNumber)
       ->group(group);
   command.add_flag("--gravity", loop.gravity, "Weight along the wales, downward")->group(group);
+}
+
+void add_thread_option(CLI::App& command, int& threads) {
+  command.add_option("--threads", threads, "Threads to use, 0 for all (results do not depend on it)")
+      ->check(CLI::Range(0, 4096))
+      ->capture_default_str();
+}
+
+void add_modes_option(CLI::App& command, int& modes) {
+  command.add_option("--modes", modes, "Say whether the cloth is stable, and its so many lowest eigenvalues")
+      ->type_name("N")
+      ->check(CLI::Range(1, 100));
+}
+
+void add_segments_option(CLI::App& command, PieceRequest& piece) {
+  command
+      .add_option("--segments", piece.segments_per_loop,
+                  "Segments of the spline in a loop: more are truer and slower")
+      ->check(CLI::Range(8.0, 96.0))
+      ->capture_default_str();
+}
+
+void add_homogenise(CLI::App& command, HomogeniseCommand& homogenise) {
+  command.add_option("FILE", homogenise.file, "Fabric or knitout file, or a saved cell")->required();
+  command
+      .add_option("--json", homogenise.json, "Write the constants as JSON to a file, - for standard output")
+      ->type_name("FILE");
+  command
+      .add_option("--csv", homogenise.csv,
+                  "Write forces over a grid of strains as CSV, - for standard output")
+      ->type_name("FILE");
+  command.add_option("--plot", homogenise.plot, "Draw the pulls along courses and wales and their laws")
+      ->type_name("SVG");
+  command.add_option("--course", homogenise.course, "The grid's strains along the courses, beside 0")
+      ->capture_default_str();
+  command.add_option("--wale", homogenise.wale, "The grid's strains along the wales, beside 0")
+      ->capture_default_str();
+  command.add_option("--shear", homogenise.shear, "The grid's shears, beside 0")->capture_default_str();
+  command.add_option("--course-pull", homogenise.course_pull, "Strain to which the cell is pulled")
+      ->check(CLI::Range(0.01, 5.0))
+      ->capture_default_str();
+  command.add_option("--wale-pull", homogenise.wale_pull, "The same along the wales")
+      ->check(CLI::Range(0.01, 5.0))
+      ->capture_default_str();
+  command.add_option("--step", homogenise.step, "Largest step of strain")
+      ->check(CLI::Range(1e-4, 0.2))
+      ->capture_default_str();
+  add_segments_option(command, homogenise.piece);
+  add_thread_option(command, homogenise.threads);
+}
+
+void add_sensitivity(CLI::App& command, SensitivityCommand& sensitivity) {
+  command.add_option("FILE", sensitivity.file, "Fabric or knitout file, or a saved cell")->required();
+  command
+      .add_option("--deviation", sensitivity.deviations,
+                  "Standard deviation of a quantity in per cent: loop-length=2 bend-stiffness=20")
+      ->type_name("KEY=PERCENT");
+  command.add_option("--csv", sensitivity.csv, "Write the table as CSV, - for standard output")
+      ->type_name("FILE");
+  command.add_option("--json", sensitivity.json, "Write it as JSON to a file, - for standard output")
+      ->type_name("FILE");
+  add_segments_option(command, sensitivity.piece);
+  add_thread_option(command, sensitivity.threads);
 }
 
 using Action = std::function<int()>;
@@ -181,6 +246,7 @@ void add_commands(CLI::App& app, Commands& commands, Action& action) {
       ->capture_default_str();
   relax->add_option("--most-iterations", commands.relax.most_iterations, "Stop after so many Newton steps")
       ->check(CLI::Range(1, 1'000'000));
+  add_modes_option(*relax, commands.relax.modes);
   relax->callback([&] { action = [&] { return run(commands.relax); }; });
 
   CLI::App* stretch =
@@ -218,6 +284,16 @@ void add_commands(CLI::App& app, Commands& commands, Action& action) {
       ->check(CLI::Range(0, 4096))
       ->capture_default_str();
   stretch->callback([&] { action = [&] { return run(commands.stretch); }; });
+
+  CLI::App* homogenise = app.add_subcommand(
+      "homogenise", "Membrane constants of a cell: stiffness, Poisson's ratios, forces over strains");
+  add_homogenise(*homogenise, commands.homogenise);
+  homogenise->callback([&] { action = [&] { return run(commands.homogenise); }; });
+
+  CLI::App* sensitivity =
+      app.add_subcommand("sensitivity", "How a cell's size and stiffness depend on the data of its yarn");
+  add_sensitivity(*sensitivity, commands.sensitivity);
+  sensitivity->callback([&] { action = [&] { return run(commands.sensitivity); }; });
 
   CLI::App* render =
       app.add_subcommand("render", "Draw a picture of a file's first geometry or of a saved state");
@@ -307,6 +383,7 @@ void add_commands(CLI::App& app, Commands& commands, Action& action) {
       ->add_option("--json", commands.measure.json,
                    "Write measurements as JSON to a file, - for standard output")
       ->type_name("FILE");
+  add_modes_option(*measure, commands.measure.modes);
   measure->callback([&] { action = [&] { return run(commands.measure); }; });
 
   app.add_subcommand("version", "Print the version")->callback([&] {

@@ -110,17 +110,20 @@ int run(const RelaxCommand& command) {
 
   const Assessment assessment = assess(relaxed.fabric);
   const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (!command.json.empty()) {
-    JsonObject all = results(assessment, relaxed);
-    all.emplace_back("wall_s", wall_s);
-    all.emplace_back("peak_memory_mb", peak_memory_mb());
-    write_json(command.json, all);
-  }
   std::ostringstream line;
   line.precision(3);
   line << command.file << ": " << summary(assessment) << ", " << relaxed.newton_iterations
        << " Newton steps, " << wall_s << " s\n";
   people(command.json) << line.str();
+  JsonObject all = results(assessment, relaxed);
+  all.emplace_back("wall_s", wall_s);
+  all.emplace_back("peak_memory_mb", peak_memory_mb());
+  if (command.modes > 0 && !relaxed.stopped) {
+    RelaxOptions at_rest = piece->options;
+    at_rest.model.plates = relaxed.plates;
+    tell_stability(command.file, relaxed.fabric, at_rest, command.modes, all, people(command.json));
+  }
+  if (!command.json.empty()) write_json(command.json, all);
 
   bool broken = say_if_broken(command.file, assessment, relaxed.pass_throughs);
   if (assessment.linked != linked_before) {

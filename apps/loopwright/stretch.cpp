@@ -10,10 +10,10 @@
 #include "experiments/stretch.hpp"
 #include "files.hpp"
 #include "interrupt.hpp"
-#include "outputs/write_csv.hpp"
 #include "outputs/write_fabric.hpp"
 #include "outputs/write_plot_svg.hpp"
 #include "progress_bar.hpp"
+#include "stretch_table.hpp"
 
 namespace loopwright {
 namespace {
@@ -35,20 +35,6 @@ StretchTest stretch_test(const StretchCommand& command) {
   }
   test.free_across = !command.held_across;
   return test;
-}
-
-Table table_of(const StretchResult& result) {
-  Table table;
-  table.columns = {
-      "course_strain",       "wale_strain",  "shear",         "course_force_N_m",  "wale_force_N_m",
-      "shear_force_N_m",     "energy_J_m2",  "residual",      "newton_iterations", "pass_throughs",
-      "interlacings_intact", "interlacings", "min_clearance", "converged"};
-  for (const StretchPoint& p : result.points)
-    table.rows.push_back({p.course_strain, p.wale_strain, p.shear, p.course_force, p.wale_force,
-                          p.shear_force, p.energy, p.residual, static_cast<double>(p.newton_iterations),
-                          static_cast<double>(p.pass_throughs), static_cast<double>(p.interlacings_intact),
-                          static_cast<double>(p.interlacings), p.min_clearance, p.converged ? 1.0 : 0.0});
-  return table;
 }
 
 Plot plot_of(const StretchCommand& command, const StretchResult& result) {
@@ -118,7 +104,7 @@ int run(const StretchCommand& command) {
     return !interrupted();
   });
 
-  if (!command.csv.empty()) write_csv(command.csv, table_of(result));
+  if (!command.csv.empty()) write_csv(command.csv, table_of(result.points));
   if (!command.plot.empty()) write_plot_svg(command.plot, plot_of(command, result));
   if (!command.out.empty()) {
     State state = saved_state(result.fabric, options, 1);

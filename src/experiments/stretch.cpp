@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "experiments/deformed.hpp"
 #include "geometry/interlacing.hpp"
 
 namespace loopwright {
@@ -44,19 +45,6 @@ std::vector<double> steps_on_the_way(const StretchTest& test) {
     from = to;
   }
   return all;
-}
-
-// The fabric with other measures; its points go along affinely.
-Fabric deformed(const Fabric& fabric, double width, double height, double skew) {
-  Fabric result = fabric;
-  for (FabricYarn& yarn : result.yarns)
-    for (Vec3& p : yarn.control_points) {
-      const double eta = p.y / fabric.height, xi = (p.x - eta * fabric.skew) / fabric.width;
-      p.x = xi * width + eta * skew;
-      p.y = eta * height;
-    }
-  result.width = width, result.height = height, result.skew = skew;
-  return result;
 }
 
 FreeMeasures free_measures(const StretchTest& test, const FreeMeasures& usual) {

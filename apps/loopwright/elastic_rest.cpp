@@ -1,0 +1,36 @@
+#include "elastic_rest.hpp"
+
+#include <iostream>
+#include <sstream>
+
+#include "experiments/rest_hessian.hpp"
+#include "interrupt.hpp"
+#include "progress_bar.hpp"
+
+namespace loopwright {
+
+ElasticRest elastic_rest_of(const std::string& file, const Piece& piece) {
+  ProgressBar bar("relaxing");
+  RelaxOptions options = piece.options;
+  options.on_progress = [&bar](const RelaxProgress& progress) {
+    std::ostringstream note;
+    note << progress.phase << ", step " << progress.newton_iterations;
+    bar.show(0.5 * progress.radius, note.str());
+    return !interrupted();
+  };
+  ElasticRest rest;
+  rest.relaxed = elastic_rest(piece.state.fabric, options);
+  if (rest.relaxed.stopped) {
+    std::cerr << file << ": stopped before the cloth was at rest\n";
+    rest.status = exit_interrupted;
+    return rest;
+  }
+  rest.assessment = assess(rest.relaxed.fabric);
+  if (say_if_broken(file, rest.assessment, rest.relaxed.pass_throughs)) rest.status = exit_error;
+  if (!rest.relaxed.converged)
+    std::cerr << file << ": warning: not sharply at rest: " << rest.relaxed.message << ", residual "
+              << rest.relaxed.residual << " B/d^2\n";
+  return rest;
+}
+
+}  // namespace loopwright

@@ -58,7 +58,8 @@ std::vector<Vec3> sample_forces(const YarnModel& model, const YarnState& state) 
       forces[first_b + k] -= {gb[0], gb[1], gb[2]};
     }
     // the law is silent inside a core: say it
-    if (std::isinf(out.energy)) forces[first_a].x = forces[first_b].x = out.energy;
+    if (std::isinf(out.energy))
+      for (std::size_t k = 0; k < count; ++k) forces[first_a + k].x = forces[first_b + k].x = out.energy;
   }
   return forces;
 }
@@ -71,11 +72,10 @@ YarnForces yarn_forces(const Fabric& fabric, const ModelOptions& options) {
   YarnForces result;
   result.tension = tensions(fabric, model);
   const std::vector<Vec3> forces = sample_forces(model, state);
-  for (int e = 0; e < model.segments; ++e) {
-    double sum = 0;
-    for (int k = 0; k < model.samples; ++k)
-      sum += norm(forces[static_cast<std::size_t>(e * model.samples + k)]);
-    result.contact.push_back(sum / model.yarn_of(e).rest_length);
+  result.samples = model.samples;
+  for (std::size_t k = 0; k < forces.size(); ++k) {
+    const double rest = model.yarn_of(static_cast<int>(k) / model.samples).rest_length;
+    result.contact.push_back(norm(forces[k]) * model.samples / rest);
   }
   return result;
 }

@@ -8,14 +8,15 @@ namespace loopwright {
 
 // Of all segments of all yarns in turn.
 struct YarnForces {
-  std::vector<double> tension;  // B/d^2; negative where the yarn is shorter than unloaded
-  std::vector<double> contact;  // what other yarn presses with, per length of this one, B/d^3
+  std::vector<double> tension;  // [segment] B/d^2; negative where the yarn is shorter than unloaded
+  int samples = 1;              // contact samples per segment, at the middles of its equal parts
+  std::vector<double> contact;  // [segment * samples + k] what other yarn presses with, per length, B/d^3
 };
 
-// Tension is the stretch stiffness times the segment's mean strain (energies/stretch.hpp). Contact is the sum
-// of all forces at a contact sample (energies/contact.hpp), its magnitude averaged over the segment's
-// samples: two forces that pinch a yarn from both sides cancel. Infinite where yarn is inside a core. Throws
-// std::invalid_argument as build_yarn_model() does.
+// Tension is the stretch stiffness times the segment's mean strain (energies/stretch.hpp). Contact is the
+// magnitude of the sum of all forces at a contact sample (energies/contact.hpp): two forces that pinch a yarn
+// from both sides cancel. Infinite in segments that reach into a core. Throws std::invalid_argument as
+// build_yarn_model() does.
 YarnForces yarn_forces(const Fabric& fabric, const ModelOptions& options);
 
 }  // namespace loopwright

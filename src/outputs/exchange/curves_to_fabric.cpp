@@ -15,7 +15,6 @@ namespace {
 // The yarn's segments, in d: the first step that is tried, how close the yarn is to come to its curve, and
 // where trying ends.
 constexpr double first_step = 1.25, close_enough = 0.01, least_step = 0.5;
-constexpr double most_segments = 2e7;  // of all yarns: some gigabytes
 
 struct Placed {
   ArcLengthCurve curve;
@@ -164,7 +163,7 @@ CurveFabric fabric_of_curves(const CurveFile& file, const CurveOptions& options)
   double segments = 0;
   for (std::size_t k = 0; k < curves.size(); ++k)
     segments += curves[k].curve.length() * unit_mm / mm[k] / least_step;
-  if (!(segments < most_segments))
+  if (!(segments < options.most_segments))
     throw std::invalid_argument("the curves are too long for yarn of " + std::to_string(fabric.diameter_mm) +
                                 " mm: " + std::to_string(segments) +
                                 " pieces; say --yarn diameter=... or --unit");

@@ -14,6 +14,7 @@ struct CurveOptions {
   std::optional<double> diameter_mm{};  // of every yarn; else the file's, else usual_distance()
   double linear_density_tex = 0;        // 0: unknown
   std::string colour{};                 // for curves without one
+  double most_segments = 2e7;           // of all yarns; more is refused: it would be gigabytes
 };
 
 struct CurveFabric {

@@ -32,6 +32,19 @@ double curvature(const Slopes& s) {
   return speed > 0 ? norm(cross(s.first, s.second)) / (speed * speed * speed) : 0;
 }
 
+// Contact at parameter t, between the two samples that are nearest; `first`: the yarn's first segment.
+double contact_at(const YarnForces& forces, std::size_t first, const FabricYarn& yarn, double t) {
+  const int count = yarn.segments() * forces.samples;
+  const double along = t * forces.samples - 0.5;
+  const int before = static_cast<int>(std::floor(along));
+  const auto sample = [&](int k) {
+    k = yarn.periodic ? (k % count + count) % count : std::clamp(k, 0, count - 1);
+    return forces.contact[first * static_cast<std::size_t>(forces.samples) + static_cast<std::size_t>(k)];
+  };
+  const double share = along - before;
+  return (1 - share) * sample(before) + share * sample(before + 1);
+}
+
 }  // namespace
 
 std::optional<ToldForces> told_forces(const State& state) {
@@ -119,7 +132,8 @@ YarnPoints PointSource::of(std::size_t yarn) const {
     if (!forces_) continue;
     const std::size_t at = first_segment_[yarn] + static_cast<std::size_t>(segment);
     points.tension.push_back(forces_->forces.tension[at] * forces_->tension_scale);
-    points.contact.push_back(forces_->forces.contact[at] * forces_->contact_scale);
+    points.contact.push_back(contact_at(forces_->forces, first_segment_[yarn], of, t) *
+                             forces_->contact_scale);
   }
   return points;
 }

@@ -182,7 +182,6 @@ void relax_held(benchmark::State& state) {
     const Fabric first = first_geometry(knitting, request);
     RelaxOptions options = relax_options(first, knitting.program, request);
     const std::optional<Fabric> start = start_from_relaxed_cell(knitting, request, first, options);
-    if (start) options.grow_in = false;
     result = relax(start ? *start : first, options);
   }
   std::filesystem::remove(file);

@@ -11,6 +11,7 @@
 #include "geometry/start_from_cell.hpp"
 #include "geometry/window.hpp"
 #include "machine/run_machine.hpp"
+#include "mechanics/tiled_history.hpp"
 #include "mechanics/yarn_material.hpp"
 #include "notation/material.hpp"
 #include "notation/read_program.hpp"
@@ -160,7 +161,7 @@ RelaxOptions relax_options(const Fabric& fabric, const Program& program, const P
 }
 
 std::optional<Fabric> start_from_relaxed_cell(const Knitting& knitting, const PieceRequest& request,
-                                              const Fabric& first, const RelaxOptions& options) {
+                                              const Fabric& first, RelaxOptions& options) {
   const Program& program = knitting.program;
   if (first.periodic || request.window || program.window.needles == 0 || program.repeat_starts.size() < 2)
     return std::nullopt;
@@ -179,7 +180,11 @@ std::optional<Fabric> start_from_relaxed_cell(const Knitting& knitting, const Pi
   cell_options.grow_in = true;
   const RelaxResult relaxed = relax(*cell, cell_options);
   if (!relaxed.converged) return std::nullopt;
-  return start_from_cell(first, relaxed.fabric, knitting.graph, range);
+  std::optional<StartFromCell> start = start_from_cell(first, relaxed.fabric, knitting.graph, range);
+  if (!start) return std::nullopt;
+  options.grow_in = false;
+  options.history = tiled_history(relaxed.fabric, relaxed.history, *start);
+  return std::move(start->fabric);
 }
 
 RelaxOptions relax_options(const State& state) {

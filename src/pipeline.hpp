@@ -73,10 +73,10 @@ ImportedCurves import_curves(const std::filesystem::path& file, const PieceReque
 // asked for, else the yarn's own, else 0.25 (the middle of what is measured for wool, cotton and acrylic).
 RelaxOptions relax_options(const Fabric& fabric, const Program& program, const PieceRequest& request);
 // A held piece of a repeated notation, with every loop as it is in the relaxed periodic cell of one repeat:
-// nearly at rest from the start. Nothing where the piece has no such cell; then it starts from the first
-// geometry.
+// nearly at rest from the start, and options made ready for it: no grow-in, and friction as it holds the
+// cell. Nothing where the piece has no such cell; then it starts from the first geometry.
 std::optional<Fabric> start_from_relaxed_cell(const Knitting& knitting, const PieceRequest& request,
-                                              const Fabric& first, const RelaxOptions& options);
+                                              const Fabric& first, RelaxOptions& options);
 // The same for a saved state: it holds what is needed, and how far it was. Throws std::invalid_argument if
 // not.
 RelaxOptions relax_options(const State& state);

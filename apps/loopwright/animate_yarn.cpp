@@ -119,10 +119,8 @@ std::optional<Piece> piece_of_size(const std::string& file, const std::string& s
   if (!diagnostics.ok()) return std::nullopt;
   Fabric fabric = first_geometry(knitting, request);
   RelaxOptions relaxing = relax_options(fabric, knitting.program, request);
-  if (std::optional<Fabric> started = start_from_relaxed_cell(knitting, request, fabric, relaxing)) {
+  if (std::optional<Fabric> started = start_from_relaxed_cell(knitting, request, fabric, relaxing))
     fabric = std::move(*started);
-    relaxing.grow_in = false;
-  }
   return Piece{saved_state(fabric, relaxing, relaxing.grow_in ? 0 : 1), relaxing};
 }
 

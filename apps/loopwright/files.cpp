@@ -77,10 +77,8 @@ std::optional<Piece> read_piece(const std::string& file, const PieceRequest& req
       Fabric fabric = first_geometry(knitting, request);
       RelaxOptions options = relax_options(fabric, knitting.program, request);
       if (request.start_from_cell)
-        if (std::optional<Fabric> started = start_from_relaxed_cell(knitting, request, fabric, options)) {
+        if (std::optional<Fabric> started = start_from_relaxed_cell(knitting, request, fabric, options))
           fabric = std::move(*started);
-          options.grow_in = false;
-        }
       piece = Piece{saved_state(fabric, options, options.grow_in ? 0 : 1), options};
     } catch (const std::invalid_argument& fault) {
       diagnostics.error({}, fault.what());

@@ -6,6 +6,7 @@
 
 #include "dynamics/motion_solver.hpp"
 #include "dynamics/yarn_motion.hpp"
+#include "mechanics/contact/sample_clearance.hpp"
 #include "mechanics/safe_step.hpp"
 
 namespace loopwright {
@@ -18,35 +19,6 @@ constexpr double gap_share = 0.7, loose = 0.6;
 constexpr double left_of_shell = 0.3;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-// Smallest distance of contact samples that may touch, in units of the yarns' mean diameter; at most `most`.
-double smallest_clearance(const YarnModel& model, const YarnState& state, double most) {
-  std::vector<Vec3> extended;
-  SamplePlaces places;
-  std::vector<SegmentPair> pairs;
-  expand(model, state, extended);
-  place_samples(model, extended, places);
-  find_segment_pairs(model, state, places, most, pairs);
-  double nearest = most;
-  for (const SegmentPair& pair : pairs) {
-    const double diameter = 0.5 * (model.yarn_of(pair.a).diameter + model.yarn_of(pair.b).diameter);
-    if (!pair.same_yarn) {
-      nearest = std::min(nearest, std::sqrt(pair.distance2) / diameter);
-      continue;
-    }
-    const double spacing = model.yarn_of(pair.a).rest_length / model.samples,
-                 excluded = model.excluded * model.yarn_of(pair.a).diameter;
-    for (int i = 0; i < model.samples; ++i)
-      for (int j = 0; j < model.samples; ++j) {
-        if (std::abs(pair.arc_offset + (j - i) * spacing) < excluded) continue;
-        const std::size_t a = at(pair.a * model.samples + i), b = at(pair.b * model.samples + j);
-        nearest = std::min(nearest, distance({places.x[a], places.y[a], places.z[a]},
-                                             {places.x[b], places.y[b], places.z[b]}) /
-                                        diameter);
-      }
-  }
-  return nearest;
-}
 
 YarnState yarn_state(const FabricContact& contact, const std::vector<Vec3>& place) {
   return {place, contact.width, contact.height, 0};

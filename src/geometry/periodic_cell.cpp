@@ -71,6 +71,32 @@ class CellCutter {
     return {found->second, shifts_[id.position()]};
   }
 
+  // Calls visit(loop, shift) for the loops of the curve that begins with the cell's loop `start`, in their
+  // order along it: on the curve they lie at this shift from their places in the cell. Returns the shift at
+  // which the curve comes back to its start. `done`: the loops that were visited, by this and earlier walks.
+  template <typename Visit>
+  Shift walk(LoopId start, std::vector<std::uint8_t>& done, const Visit& visit) const {
+    Shift at{0, 0};
+    LoopId id = start;
+    do {
+      const Loop& loop = graph_.loop(id);
+      if (done[id.position()] != 0)
+        throw std::invalid_argument("periodic cell: two yarns lead to the loop of line " +
+                                    std::to_string(loop.at.line));
+      done[id.position()] = 1;
+      const auto order = static_cast<std::size_t>(loop.order);
+      const GraphYarn& yarn = graph_.yarns[loop.yarn.position()];
+      if (order + 1 >= yarn.loops.size())
+        throw std::invalid_argument("periodic cell: the yarn of line " + std::to_string(loop.at.line) +
+                                    " ends in the cell");
+      visit(id, at);
+      Shift step;
+      id = counterpart(yarn.loops[order + 1], step);
+      at = at + step;
+    } while (id != start);
+    return at;
+  }
+
   LoopId image(LoopId id, const Shift& wanted) const {
     for (std::size_t i = 0; i < places_.size(); ++i)
       if (shifts_[i] == wanted && places_[i] == places_[id.position()]) return LoopId(i);
@@ -166,30 +192,16 @@ YarnCurves cut_periodic_cell(const YarnGraph& graph, const GeometryOptions& opti
     const int yarn = graph.loop(start).yarn.value;
     CurveYarn curve = empty_curve(graph, options, yarn);
     curve.periodic = true;
-    Shift at{0, 0};
-    LoopId id = start;
-    do {
+    curve.shift = cutter.walk(start, done, [&](LoopId id, const Shift& at) {
       const Loop& loop = graph.loop(id);
-      const std::size_t y = loop.yarn.position(), order = static_cast<std::size_t>(loop.order);
-      const GraphYarn& graph_yarn = graph.yarns[y];
-      if (order + 1 >= graph_yarn.loops.size())
-        throw std::invalid_argument("periodic cell: the yarn of line " + std::to_string(loop.at.line) +
-                                    " ends in the cell");
-      if (done[id.position()] != 0)
-        throw std::invalid_argument("periodic cell: two yarns lead to the loop of line " +
-                                    std::to_string(loop.at.line));
-      done[id.position()] = 1;
       moved[id.position()] = at;
+      const std::size_t y = loop.yarn.position(), order = static_cast<std::size_t>(loop.order);
       const PlacedSinker& before = piece.sinkers[y][order];
       if (curve.points.empty()) curve.points.push_back(before.points[before.middle]);
       append_loop(loop, id, before, piece.loops[id.position()], piece.sinkers[y][order + 1], options,
                   lattice(at), curve);
-      Shift step;
-      id = cutter.counterpart(graph_yarn.loops[order + 1], step);
-      at = at + step;
-    } while (id != start);
+    });
     curve.points.pop_back();  // the first point again, one period on
-    curve.shift = at;
     curves.yarns.push_back(std::move(curve));
   }
   for (const Interlacing& interlacing : graph.interlacings) {
@@ -210,8 +222,17 @@ YarnCurves cut_periodic_cell(const YarnGraph& graph, const GeometryOptions& opti
 
 std::vector<CellImage> cell_images(const YarnGraph& graph, const CellRange& range) {
   const CellCutter cutter(graph, range);
+  std::vector<Shift> moved(graph.loops.size(), Shift{0, 0});
+  std::vector<std::uint8_t> done(graph.loops.size(), 0);
+  for (const LoopId start : cutter.loops())
+    if (done[start.position()] == 0)
+      cutter.walk(start, done, [&](LoopId id, const Shift& at) { moved[id.position()] = at; });
   std::vector<CellImage> images;
-  for (std::size_t i = 0; i < graph.loops.size(); ++i) images.push_back(cutter.image_of(LoopId(i)));
+  for (std::size_t i = 0; i < graph.loops.size(); ++i) {
+    images.push_back(cutter.image_of(LoopId(i)));
+    if (const LoopId loop = images.back().loop; loop.valid())
+      images.back().shift = images.back().shift - moved[loop.position()];
+  }
   return images;
 }
 

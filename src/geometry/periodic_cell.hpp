@@ -24,8 +24,8 @@ CellRange cell_range(const Program& program);
 YarnCurves cut_periodic_cell(const YarnGraph& graph, const GeometryOptions& options, const PlacedPiece& piece,
                              const CellRange& range);
 
-// For every loop of the piece: the cell's loop that it is an image of and its lattice shift; an invalid id
-// where it has none (selvedges, cast-on).
+// For every loop of the piece: the cell's loop that it is an image of and the lattice shift to it from where
+// that loop lies on the cell's curve; an invalid id where it has none (selvedges, cast-on).
 struct CellImage {
   LoopId loop;
   std::array<int, 2> shift{0, 0};

@@ -99,11 +99,11 @@ YarnState Assembly::moved(const YarnState& state, const Unknowns& step, double s
 }
 
 Vec3 Assembly::remembered_slip(const SegmentPair& pair) const {
-  const auto key = [](const SegmentPair& p) { return std::tie(p.a, p.b, p.m, p.n); };
+  const auto key = [](const auto& p) { return std::tie(p.a, p.b, p.m, p.n); };
   const auto at =
       std::lower_bound(remembered_.begin(), remembered_.end(), pair,
-                       [&](const FrictionContact& c, const SegmentPair& p) { return key(c.pair) < key(p); });
-  return at != remembered_.end() && key(at->pair) == key(pair) ? at->law.slip : Vec3{};
+                       [&](const ContactSlip& c, const SegmentPair& p) { return key(c) < key(p); });
+  return at != remembered_.end() && key(*at) == key(pair) ? at->slip : Vec3{};
 }
 
 // Place of the contact on yarn a minus its place on yarn b, from the extended points of the state last
@@ -124,7 +124,9 @@ void Assembly::accept(const YarnState& state) {
     contact.law.slip = contact.law.slip_after(relative_place(contact, state));
   remembered_.clear();
   for (const FrictionContact& contact : friction_)
-    if (contact.law.load > 0) remembered_.push_back(contact);
+    if (contact.law.load > 0)
+      remembered_.push_back(
+          {contact.pair.a, contact.pair.b, contact.pair.m, contact.pair.n, contact.law.slip});
 }
 
 EnergyParts Assembly::energy(const YarnState& state) {

@@ -22,6 +22,14 @@ struct EnergyParts {
   double total() const { return stored() + friction + load; }
 };
 
+// The elastic slip of segment a against segment b at lattice image (m, n), in d.
+struct ContactSlip {
+  std::int32_t a = 0, b = 0;
+  std::int8_t m = 0, n = 0;
+  Vec3 slip;
+};
+using ContactHistory = std::vector<ContactSlip>;
+
 class Assembly {
  public:
   explicit Assembly(const YarnModel& model);
@@ -41,13 +49,10 @@ class Assembly {
   // dE/d(width, height, skew) of the cloth at the last Hessian's state, without loads: what the frame bears,
   // for measures that are not free as well.
   const Measures& measure_forces() const { return measure_forces_; }
-  // Elastic slip of every contact that carries load, to go on with: by segments and lattice shift.
-  struct FrictionContact {
-    SegmentPair pair;
-    Friction law;
-  };
-  const std::vector<FrictionContact>& history() const { return remembered_; }
-  void set_history(std::vector<FrictionContact> history) { remembered_ = std::move(history); }
+  // The elastic slip of every contact that carries load, sorted like pairs(): friction's history, to go on
+  // with.
+  const ContactHistory& history() const { return remembered_; }
+  void set_history(ContactHistory history) { remembered_ = std::move(history); }
   // Moves the friction history along: the cloth has gone from the last Hessian's state to this one.
   void accept(const YarnState& state);
 
@@ -65,6 +70,10 @@ class Assembly {
   YarnState moved(const YarnState& state, const Unknowns& step, double scale) const;
 
  private:
+  struct FrictionContact {
+    SegmentPair pair;
+    Friction law;
+  };
   EnergyParts terms(const YarnState& state, Unknowns* gradient, BlockMatrix* hessian);
   Vec3 remembered_slip(const SegmentPair& pair) const;
   Vec3 relative_place(const FrictionContact& contact, const YarnState& state) const;
@@ -77,8 +86,7 @@ class Assembly {
   std::vector<SegmentPair> pairs_;
   std::vector<std::int32_t> active_;       // pairs in contact in the last Hessian's state
   std::vector<FrictionContact> friction_;  // one for each of these, if there is friction
-  std::vector<FrictionContact>
-      remembered_;  // history: contacts of the last accepted step, sorted like pairs_
+  ContactHistory remembered_;              // of the last accepted step
   std::vector<Vec3> extended_;
   SamplePlaces places_;
   std::vector<std::array<double, 2>> fraction_;  // [extended]

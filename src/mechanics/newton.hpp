@@ -24,8 +24,6 @@ struct NewtonResult {
   Measures measure_forces{};  // dE/d(width, height, skew), B/d^2, free or not
 };
 
-using ContactHistory = std::vector<Assembly::FrictionContact>;
-
 // `history`, if there is one, is where friction starts from and is left as it is at the end.
 NewtonResult newton(const YarnModel& model, YarnState& state, const NewtonOptions& options,
                     double first_shift, ContactHistory* history = nullptr);

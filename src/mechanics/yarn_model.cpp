@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include "mechanics/binding_space.hpp"
 
 namespace loopwright {
 namespace {
@@ -106,6 +107,7 @@ YarnModel build_yarn_model(const Fabric& fabric, const ModelOptions& options) {
           "segments of " + std::to_string(longest_segment) + " d are too long for contact samples every " +
               std::to_string(options.sample_spacing) + " d; use more segments per loop");
   model.weights = sample_weights(model.samples);
+  model.binding_points = binding_space(fabric);
 
   model.point_loads = options.point_loads;
   require(model.point_loads.empty() || model.point_loads.size() == model.held.size(),

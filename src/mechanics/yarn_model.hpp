@@ -8,6 +8,7 @@
 #include "geometry/fabric.hpp"
 #include "mechanics/energies/contact.hpp"
 #include "mechanics/laws/contact_law.hpp"
+#include "mechanics/linear/coarse_space.hpp"
 #include "mechanics/measures.hpp"
 
 namespace loopwright {
@@ -64,6 +65,9 @@ struct YarnModel {
   const Yarn& yarn_of(int segment) const {
     return yarns[static_cast<std::size_t>(yarn_of_segment[static_cast<std::size_t>(segment)])];
   }
+
+  // Which binding points carry which control points: the solver's coarse space.
+  CoarseSpace binding_points;
 
   ContactLaw contact;
   double friction = 0;

@@ -71,11 +71,6 @@ int predict(const std::filesystem::path& folder, const std::string& name, const 
   std::filesystem::create_directories(rows);
   const MachineModel machine;
   const SwatchPrediction net = predict_by_net(found->file, machine, read_loop_sizes(table));
-  const auto write_row = [&](const SwatchPrediction& cell) {
-    AtomicFile file(rows / (name + ".row"));
-    for (const auto& [key, value] : row_of(cell, net)) file.stream() << key << ' ' << value << '\n';
-    file.commit();
-  };
   SwatchWork work;
   work.stretched = true;
   work.state = rows / (name + ".h5");
@@ -97,7 +92,9 @@ int predict(const std::filesystem::path& folder, const std::string& name, const 
     cell.width_mm = net.width_mm, cell.height_mm = net.height_mm, cell.mass_g = net.mass_g;
     cell.converged = cell.stretched_converged = false;
   }
-  write_row(cell);
+  AtomicFile file(rows / (name + ".row"));
+  for (const auto& [key, value] : row_of(cell, net)) file.stream() << key << ' ' << value << '\n';
+  file.commit();
   return 0;
 }
 

@@ -15,12 +15,7 @@ namespace {
 
 constexpr double bend_stiffness = 1e-8;  // N m^2
 
-RelaxOptions with_friction(double friction) {
-  RelaxOptions options = frictionless();
-  options.model.material.friction = friction;
-  options.model.material.reference_bend_N_m2 = bend_stiffness;
-  return options;
-}
+RelaxOptions with_friction(double friction) { return loopwright::with_friction(friction, bend_stiffness); }
 
 TEST(Loads, ClothAtRestBearsWhatItIsLoadedWith) {
   const Fabric first = knitted("g", "periodic", "");

@@ -18,12 +18,7 @@ using std::numbers::pi;
 
 constexpr double bend = 1e-8;  // N m^2
 
-RelaxOptions yarn(double friction) {
-  RelaxOptions options = frictionless();
-  options.model.material.friction = friction;
-  options.model.material.reference_bend_N_m2 = bend;
-  return options;
-}
+RelaxOptions yarn(double friction) { return loopwright::with_friction(friction, bend); }
 
 std::vector<StretchPoint> stretched(const std::string& courses, StretchDirection direction,
                                     std::vector<double> to, double step, double friction = 0) {

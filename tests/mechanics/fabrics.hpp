@@ -72,4 +72,12 @@ inline RelaxOptions frictionless() {
   return options;
 }
 
+// The same with friction and with forces in newtons.
+inline RelaxOptions with_friction(double friction, double bend_stiffness_N_m2) {
+  RelaxOptions options = frictionless();
+  options.model.material.friction = friction;
+  options.model.material.reference_bend_N_m2 = bend_stiffness_N_m2;
+  return options;
+}
+
 }  // namespace loopwright

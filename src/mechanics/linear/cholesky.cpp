@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #ifdef LOOPWRIGHT_HAS_CHOLMOD
-#include <cholmod.h>
+#include "mechanics/linear/supernodal_single.hpp"
 #else
 #include <Eigen/SparseCholesky>
 #endif
@@ -15,6 +15,8 @@
 // OpenBLAS, if that is the BLAS in use: its threads would fight with ours, and results must not depend on
 // their number.
 extern "C" void openblas_set_num_threads(int) __attribute__((weak));
+// The same for CHOLMOD's own loops; it holds for the thread that calls it.
+extern "C" void omp_set_num_threads(int) __attribute__((weak));
 #endif
 
 namespace loopwright {
@@ -98,6 +100,7 @@ struct Cholesky::Factor {
   std::vector<Block> border;
   Block corner_inverse{};
 #ifdef LOOPWRIGHT_HAS_CHOLMOD
+  SupernodalSingle single;  // in use after compact()
   cholmod_common common{};
   cholmod_factor* factor = nullptr;
   std::vector<int> order;
@@ -171,6 +174,14 @@ struct Cholesky::Factor {
       for (int d = 0; d < 3; ++d) order.push_back(3 * i + d);
     best_entries = 0;
   }
+  void compact() {
+    if (!factor) return;
+    single = SupernodalSingle(*factor);
+    cholmod_free_factor(&factor, &common);
+    cholmod_free_work(&common);
+    lower = {};
+    row_start = column = {};
+  }
   void analyse(const BlockMatrix& m) {
     for (int attempt = 0; attempt < 2; ++attempt) {
       const bool fresh = order.size() != static_cast<std::size_t>(unknowns) || attempt == 1;
@@ -185,12 +196,15 @@ struct Cholesky::Factor {
     }
   }
   bool numeric() {
+    if (omp_set_num_threads) omp_set_num_threads(1);
+    single = {};
     cholmod_sparse a = view();
     cholmod_factorize(&a, factor, &common);
     if (common.status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
     return common.status == CHOLMOD_OK && factor->minor == factor->n;
   }
   void solve(const double* b, double* x) {
+    if (!factor) return single.solve(b, x);
     cholmod_dense rhs{};
     rhs.nrow = rhs.d = rhs.nzmax = static_cast<std::size_t>(unknowns);
     rhs.ncol = 1;
@@ -202,13 +216,16 @@ struct Cholesky::Factor {
     std::copy_n(static_cast<const double*>(result->x), unknowns, x);
     cholmod_free_dense(&result, &common);
   }
-  double entries() const { return factor ? static_cast<double>(factor->xsize) : 0; }
+  double entries() const {
+    return factor ? static_cast<double>(factor->xsize) : static_cast<double>(single.entries());
+  }
 #else
   Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower> factorisation;
   Eigen::Map<const Eigen::SparseMatrix<double>> view() {
     return {unknowns,           unknowns,         static_cast<Eigen::Index>(lower.row.size()),
             lower.start.data(), lower.row.data(), lower.value.data()};
   }
+  void compact() {}
   void analyse(const BlockMatrix&) { factorisation.analyzePattern(view()); }
   bool numeric() {
     factorisation.factorize(view());
@@ -227,6 +244,8 @@ struct Cholesky::Factor {
 Cholesky::Cholesky() : factor_(std::make_unique<Factor>()) {}
 Cholesky::~Cholesky() = default;
 
+void Cholesky::compact() { factor_->compact(); }
+
 double Cholesky::factor_entries() const { return factor_->entries(); }
 
 bool Cholesky::factor(const BlockMatrix& m, double shift) {
@@ -242,9 +261,12 @@ bool Cholesky::factor(const BlockMatrix& m, double shift) {
   }
   if (!f.numeric()) return false;
 
-  f.border = m.border;
+  // What has no border keeps none.
+  const bool bordered =
+      std::any_of(m.border.begin(), m.border.end(), [](const Block& c) { return c != Block{}; });
+  f.border = bordered ? m.border : std::vector<Block>{};
   Block s = m.corner;
-  std::vector<double> column(static_cast<std::size_t>(f.unknowns));
+  std::vector<double> column(bordered ? static_cast<std::size_t>(f.unknowns) : 0);
   for (std::size_t k = 0; k < 3; ++k) {
     s[4 * k] += shift * m.measure_metric[k];
     bool empty = true;
@@ -253,7 +275,7 @@ bool Cholesky::factor(const BlockMatrix& m, double shift) {
         column[3 * i + d] = f.border[i][3 * d + k];
         empty = empty && column[3 * i + d] == 0;
       }
-    f.border_solution[k].assign(static_cast<std::size_t>(f.unknowns), 0);
+    f.border_solution[k].assign(column.size(), 0);
     if (!empty) f.solve(column.data(), f.border_solution[k].data());
   }
   for (std::size_t k = 0; k < 3; ++k)
@@ -282,7 +304,8 @@ void Cholesky::solve(const Unknowns& b, Unknowns& x) {
   for (std::size_t i = 0; i < x.u.size(); ++i)
     for (std::size_t d = 0; d < 3; ++d) {
       double v = u[3 * i + d];
-      for (std::size_t k = 0; k < 3; ++k) v -= f.border_solution[k][3 * i + d] * x.g[k];
+      if (!f.border.empty())
+        for (std::size_t k = 0; k < 3; ++k) v -= f.border_solution[k][3 * i + d] * x.g[k];
       x.u[i][static_cast<int>(d)] = v;
     }
 }

@@ -7,8 +7,7 @@ namespace {
 
 constexpr int few_nodes = 1000;   // below: factoring costs less than anything cleverer
 constexpr int many_nodes = 8000;  // above: a whole factor costs too much, see linear/schwarz.hpp
-constexpr int patch_nodes = 1200;
-constexpr int most_inner = 24;  // more products and solves than this cost more than a new factor
+constexpr int most_inner = 24;    // more products and solves than this cost more than a new factor
 constexpr int most_patched = 200;
 constexpr int most_raises = 60;
 
@@ -55,7 +54,7 @@ bool StepSolver::solve_direct(const BlockMatrix& hessian, const Unknowns& gradie
 
 bool StepSolver::solve_patched(const BlockMatrix& hessian, const YarnState& state, const Unknowns& gradient,
                                double accuracy, double& shift, int& raised, Unknowns& step) {
-  if (!schwarz_.ready()) schwarz_.set_patches(state.nodes, model_.held, hessian, patch_nodes);
+  if (!schwarz_.ready()) schwarz_.set_patches(state.nodes, model_.held, hessian, model_.binding_points);
   const auto precondition = [this](const Unknowns& r, Unknowns& z) { schwarz_.solve(r, z); };
   // First with the factor at hand, allowed up to twice its usual number of iterations.
   if (current_) {

@@ -1,0 +1,151 @@
+// The two-level solver: its coarse space against products with the whole matrix, its factors against the
+// matrix. (Iterations on pieces of two sizes: tests/pipeline/held_piece_test.cpp.)
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "fabrics.hpp"
+#include "mechanics/assembly.hpp"
+#include "mechanics/binding_space.hpp"
+#include "mechanics/linear/schwarz.hpp"
+
+namespace loopwright {
+namespace {
+
+// A held piece, a model of it and its Hessian with metric at the first geometry.
+struct Problem {
+  Fabric fabric;
+  YarnModel model;
+  YarnState state;
+  BlockMatrix hessian;
+  Unknowns gradient;
+
+  Problem(const std::string& courses, int n)
+      : fabric(knitted(courses, "held", std::to_string(n) + " wales x " + std::to_string(n) + " courses")) {
+    ModelOptions options = frictionless().model;
+    options.material.contact.core = -1;  // as while yarn grows in: the first geometry may lie too close
+    model = build_yarn_model(fabric, options);
+    state = build_yarn_state(fabric);
+    Assembly assembly(model);
+    assembly.update_pairs(state, 1.6);
+    assembly.hessian(state, gradient, hessian);
+    assembly.metric(hessian);
+    hessian.measure_metric = {1, 1, 1};
+  }
+};
+
+Unknowns wave(std::size_t n, double phase) {
+  Unknowns x;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double t = 0.37 * static_cast<double>(i) + phase;
+    x.u.push_back({std::sin(t), std::cos(1.7 * t), std::sin(0.3 * t + 1)});
+  }
+  x.g = {0.3, -0.2, 0.1};
+  return x;
+}
+
+constexpr double shift = 1e3;  // enough for every matrix here to be positive definite
+
+TEST(BindingSpace, RowsSumToOneAndHeldPointsAreEmpty) {
+  const Fabric piece = knitted("g", "held", "6 wales x 5 courses");
+  const CoarseSpace space = binding_space(piece);
+  std::size_t i = 0, held = 0;
+  for (const FabricYarn& yarn : piece.yarns)
+    for (std::size_t k = 0; k < yarn.held.size(); ++k, ++i) {
+      const auto& weight = space.rows[i].weight;
+      held += yarn.held[k];
+      EXPECT_NEAR(weight[0] + weight[1] + weight[2] + weight[3], yarn.held[k] != 0 ? 0 : 1, 1e-12);
+    }
+  EXPECT_EQ(i, space.rows.size());
+  EXPECT_GT(held, 0u);
+  // One for each loop's feet, one more for each head of the last course, which nothing is drawn through.
+  EXPECT_LE(space.points, 6 * 5 + 6);
+  EXPECT_GE(space.points, 6 * 5);
+}
+
+TEST(BindingSpace, AHeadFollowsTheLoopDrawnThroughIt) {
+  const Fabric piece = knitted("g", "held", "5 wales x 5 courses");
+  const CoarseSpace space = binding_space(piece);
+  std::vector<std::size_t> first{0};
+  for (const FabricYarn& yarn : piece.yarns) first.push_back(first.back() + yarn.control_points.size());
+  const auto row_at = [&](const LoopSpan& s, double t) {
+    return space.rows[first[static_cast<std::size_t>(s.yarn)] + static_cast<std::size_t>(std::lround(t)) + 1];
+  };
+  int compared = 0;
+  for (const PlacedInterlacing& i : piece.interlacings) {
+    const auto span = [&](LoopId id) {
+      return *std::find_if(piece.loops.begin(), piece.loops.end(),
+                           [&](const LoopSpan& s) { return s.loop == id; });
+    };
+    const LoopSpan parent = span(i.parent), child = span(i.child);
+    const CoarseSpace::Row head = row_at(parent, parent.apex),
+                           foot = row_at(child, child.begin + 0.25 * (child.apex - child.begin) + 0.5);
+    if (head.weight[0] == 0 || foot.weight[0] == 0) continue;
+    EXPECT_EQ(head.point[0], foot.point[0]);
+    ++compared;
+  }
+  EXPECT_GT(compared, 4);
+}
+
+// P' A P from columns of P, by products with the whole matrix.
+TEST(CoarseSpaces, ProjectionIsTheMatrixSeenThroughTheMap) {
+  const Problem problem("g", 5);
+  for (const CoarseSpace& space :
+       {binding_space(problem.fabric), hat_space(problem.state.nodes, problem.model.held, 3, 2)}) {
+    BlockMatrix coarse;
+    space.project(problem.hessian, shift, coarse);
+    ASSERT_EQ(coarse.rows(), space.points);
+    const Unknowns c = wave(static_cast<std::size_t>(space.points), 0.2);
+    Unknowns direct;
+    multiply(coarse, c, direct);
+    Unknowns fine, product, seen;
+    fine.u.assign(problem.state.nodes.size(), Vec3{});
+    space.add_prolonged(c.u, fine.u);
+    fine.g = c.g;
+    multiply(problem.hessian, shift, fine, product);
+    space.restricted(product.u, seen.u);
+    seen.g = product.g;
+    for (std::size_t i = 0; i < seen.u.size(); ++i)
+      EXPECT_LT(norm(seen.u[i] - direct.u[i]), 1e-9 * (1 + norm(seen.u[i])));
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(seen.g[k], direct.g[k], 1e-8 * (1 + std::abs(seen.g[k])));
+  }
+}
+
+TEST(CompactFactor, SolvesToSinglePrecision) {
+  const Problem problem("g", 6);
+  Cholesky factor;
+  ASSERT_TRUE(factor.factor(problem.hessian, shift));
+  const Unknowns x = wave(problem.state.nodes.size(), 1);
+  Unknowns b, found;
+  multiply(problem.hessian, shift, x, b);
+  const auto error = [&] {
+    double most = 0;
+    for (std::size_t i = 0; i < x.u.size(); ++i) most = std::max(most, norm(found.u[i] - x.u[i]));
+    for (std::size_t k = 0; k < 3; ++k) most = std::max(most, std::abs(found.g[k] - x.g[k]));
+    return most;
+  };
+  factor.solve(b, found);
+  EXPECT_LT(error(), 1e-8);
+  const double entries = factor.factor_entries();
+  factor.compact();
+  EXPECT_EQ(factor.factor_entries(), entries);
+  factor.solve(b, found);
+  EXPECT_LT(error(), 1e-2) << "six digits, less what the condition of the matrix takes";
+  // The next factor works anew.
+  ASSERT_TRUE(factor.factor(problem.hessian, shift));
+  factor.solve(b, found);
+  EXPECT_LT(error(), 1e-8);
+}
+
+TEST(Schwarz, SaysThatTheMatrixIsNotDefinite) {
+  Problem problem("g", 10);
+  for (std::size_t k = static_cast<std::size_t>(problem.hessian.row_start[40]);
+       k < static_cast<std::size_t>(problem.hessian.row_start[41]); ++k)
+    if (problem.hessian.column[k] == 40) problem.hessian.block[k] = {-1e6, 0, 0, 0, -1e6, 0, 0, 0, -1e6};
+  Schwarz schwarz;
+  schwarz.set_patches(problem.state.nodes, problem.model.held, problem.hessian, problem.model.binding_points);
+  EXPECT_FALSE(schwarz.factor(problem.hessian, shift));
+}
+
+}  // namespace
+}  // namespace loopwright

@@ -1,0 +1,128 @@
+// Held pieces of a repeated notation start as copies of their relaxed cell: inside they are at rest before
+// the first step, friction included.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "machine/run_machine.hpp"
+#include "mechanics/linear/conjugate_gradient.hpp"
+#include "mechanics/linear/schwarz.hpp"
+#include "mechanics/newton.hpp"
+#include "notation/read_program.hpp"
+#include "pipeline.hpp"
+#include "topology/build_yarn_graph.hpp"
+
+namespace loopwright {
+namespace {
+
+struct Start {
+  Fabric fabric;
+  RelaxOptions options;
+};
+
+Start start_of(const std::string& structure, int n) {
+  const std::filesystem::path file =
+      std::filesystem::path(LOOPWRIGHT_SOURCE_DIR) / "examples/structures" / (structure + ".verm");
+  Diagnostics diagnostics(file);
+  FabricOptions size;
+  size.size_wales = size.size_courses = n;
+  size.edges = Edges::held;
+  Knitting knitting;
+  knitting.program = read_program(file, diagnostics, size);
+  knitting.record = run_machine(knitting.program, diagnostics);
+  knitting.graph = build_yarn_graph(knitting.program, knitting.record, diagnostics);
+  EXPECT_TRUE(diagnostics.ok());
+  const PieceRequest request{.start_from_cell = true};
+  Start start{first_geometry(knitting, request), {}};
+  start.options = relax_options(start.fabric, knitting.program, request);
+  std::optional<Fabric> started = start_from_relaxed_cell(knitting, request, start.fabric, start.options);
+  EXPECT_TRUE(started.has_value()) << structure;
+  if (started) start.fabric = std::move(*started);
+  return start;
+}
+
+// Largest force on control points of loops at least three rings inside the frame (control points are counted
+// from the yarns' ends, yarns from the first and last), with or without the cell's history.
+double force_inside(const Start& start, bool with_history) {
+  const YarnModel model = build_yarn_model(start.fabric, start.options.model);
+  const YarnState state = build_yarn_state(start.fabric);
+  Assembly assembly(model);
+  if (with_history) assembly.set_history(start.options.history);
+  assembly.update_pairs(state, model.contact.outer + 0.6);
+  Unknowns gradient;
+  BlockMatrix hessian;
+  assembly.hessian(state, gradient, hessian);
+  double most = 0;
+  constexpr std::size_t rings = 3, points_per_loop = 12;
+  for (std::size_t y = rings; y + rings < model.yarns.size(); ++y)
+    for (int i = static_cast<int>(rings * points_per_loop);
+         i + static_cast<int>(rings * points_per_loop) < model.yarns[y].nodes; ++i)
+      most = std::max(most, norm(gradient.u[static_cast<std::size_t>(model.yarns[y].first_node + i)]));
+  return most;
+}
+
+class HeldPiece : public testing::TestWithParam<const char*> {};
+
+TEST_P(HeldPiece, IsAtRestInsideBeforeTheFirstStep) {
+  const Start start = start_of(GetParam(), 10);
+  EXPECT_FALSE(start.options.history.empty());
+  const double carried = force_inside(start, true), dropped = force_inside(start, false);
+  EXPECT_LT(carried, 2 * start.options.tolerance);
+  EXPECT_GT(dropped, 20 * carried) << "without its history friction holds nothing";
+}
+
+TEST_P(HeldPiece, RestsInFewStepsWithAllInterlacings) {
+  const Start start = start_of(GetParam(), 8);
+  const RelaxResult rest = relax(start.fabric, start.options);
+  EXPECT_TRUE(rest.converged);
+  EXPECT_LE(rest.newton_iterations, 30);
+  EXPECT_EQ(rest.pass_throughs, 0);
+  const InterlacingCheck check = check_interlacings(rest.fabric);
+  EXPECT_EQ(check.intact, check.expected);
+  EXPECT_GT(check.expected, 40);
+}
+
+INSTANTIATE_TEST_SUITE_P(Structures, HeldPiece,
+                         testing::Values("plain", "rib", "garter", "half_cardigan", "lace"),
+                         [](const auto& structure) { return std::string(structure.param); });
+
+// Iterations that the two-level solver needs for the step after a pull on the frame.
+int first_step_iterations(const Start& start) {
+  const YarnModel model = build_yarn_model(start.fabric, start.options.model);
+  YarnState state = build_yarn_state(start.fabric);
+  Assembly assembly(model);
+  assembly.set_history(start.options.history);
+  assembly.update_pairs(state, model.contact.outer + 0.6);
+  Unknowns gradient, step;
+  BlockMatrix hessian;
+  assembly.hessian(state, gradient, hessian);
+  assembly.metric(hessian);
+  hessian.measure_metric = {1, 1, 1};
+  gradient.g[0] -= 1;
+  Schwarz schwarz;
+  schwarz.set_patches(state.nodes, model.held, hessian, model.binding_points);
+  constexpr double shift = 0.1;
+  EXPECT_TRUE(schwarz.factor(hessian, shift));
+  const ConjugateGradientResult solved = conjugate_gradient(
+      hessian, shift, [&](const Unknowns& r, Unknowns& z) { schwarz.solve(r, z); }, gradient, 1e-3, 300,
+      step);
+  EXPECT_TRUE(solved.converged);
+  Unknowns product;
+  multiply(hessian, shift, step, product);
+  axpy(-1, gradient, product);
+  EXPECT_LT(std::sqrt(dot(product, product)), 0.05 * std::sqrt(dot(gradient, gradient)));
+  return solved.iterations;
+}
+
+TEST(TwoLevelSolver, IterationsDoNotGrowWithThePiece) {
+  for (const char* structure : {"plain", "rib"}) {
+    const int small = first_step_iterations(start_of(structure, 20)),
+              large = first_step_iterations(start_of(structure, 40));
+    EXPECT_GT(small, 5) << structure;
+    EXPECT_LE(large, 1.5 * small) << structure << ": " << small << " with 400 loops, " << large
+                                  << " with 1600";
+  }
+}
+
+}  // namespace
+}  // namespace loopwright

@@ -1,5 +1,5 @@
-// Reads a STEP file with OpenCASCADE and says what is in it, a line a curve: degree, poles, arc length, and the
-// places at twenty-one equal steps of the parameter.  Usage: read_step FILE
+// Reads a STEP file with OpenCASCADE and says what is in it, a line a curve: degree, poles, arc length, and
+// the places at twenty-one equal steps of the parameter.  Usage: read_step FILE
 #include <BRep_Tool.hxx>
 #include <GCPnts_AbscissaPoint.hxx>
 #include <GeomAdaptor_Curve.hxx>

@@ -154,9 +154,7 @@ PlaceBounds append_yarn(std::string& bytes, const Fabric& fabric, std::size_t nu
                         const std::vector<int>& loops, const ExportOptions& options) {
   const FabricYarn& yarn = fabric.yarns[number];
   const YarnSkin skin = yarn_skin(fabric, yarn, options);
-  std::vector<int> of_ring;
-  for (int k = 0; k <= yarn.segments() * options.per_segment; ++k)
-    of_ring.push_back(loop_at(fabric, loops, static_cast<double>(k) / options.per_segment));
+  const std::vector<int> of_ring = loops_at_points(fabric, number, loops, options.per_segment);
   constexpr float inf = std::numeric_limits<float>::infinity();
   PlaceBounds bounds{{inf, inf, inf}, {-inf, -inf, -inf}};
   for (const YarnSkin::Vertex& vertex : skin.vertices) {

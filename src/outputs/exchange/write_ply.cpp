@@ -25,15 +25,6 @@ void put_header(std::ostream& out, const Fabric& fabric, std::size_t vertices, s
   out << "element face " << faces << "\nproperty list uchar int vertex_indices\nend_header\n";
 }
 
-// Which loop every ring of a yarn belongs to.
-std::vector<int> loops_of_rings(const Fabric& fabric, const std::vector<int>& loops, const FabricYarn& yarn,
-                                int per_segment) {
-  std::vector<int> of_ring;
-  for (int k = 0; k <= yarn.segments() * per_segment; ++k)
-    of_ring.push_back(loop_at(fabric, loops, static_cast<double>(k) / per_segment));
-  return of_ring;
-}
-
 void append_vector(std::string& bytes, const Vec3& v) {
   for (int c = 0; c < 3; ++c) append_bytes(bytes, static_cast<float>(v[c]));
 }
@@ -61,7 +52,7 @@ void write_ply(const std::filesystem::path& path, const Fabric& fabric, const Ex
   for (std::size_t y = 0; y < fabric.yarns.size(); ++y) {
     const FabricYarn& yarn = fabric.yarns[y];
     const YarnSkin skin = yarn_skin(fabric, yarn, options);
-    const std::vector<int> of_ring = loops_of_rings(fabric, loops[y], yarn, options.per_segment);
+    const std::vector<int> of_ring = loops_at_points(fabric, y, loops[y], options.per_segment);
     const std::array<std::uint8_t, 3> rgb = drawn_colour(fabric, y);
     for_each_cell(fabric, options, [&](int, int, const Vec3& moved) {
       bytes.clear();

@@ -96,6 +96,14 @@ int loop_at(const Fabric& fabric, const std::vector<int>& loops, double t) {
   return -1;
 }
 
+std::vector<int> loops_at_points(const Fabric& fabric, std::size_t yarn, const std::vector<int>& loops,
+                                 int per_segment) {
+  std::vector<int> of_point;
+  for (int k = 0; k <= fabric.yarns[yarn].segments() * per_segment; ++k)
+    of_point.push_back(loop_at(fabric, loops, static_cast<double>(k) / per_segment));
+  return of_point;
+}
+
 PointSource::PointSource(const State& state, int per_segment)
     : fabric_(state.fabric),
       per_segment_(per_segment),

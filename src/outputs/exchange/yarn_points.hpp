@@ -38,6 +38,10 @@ std::vector<std::vector<int>> loops_of_yarns(const Fabric& fabric);
 // Which loop has the place at parameter t, among those of one yarn (loops_of_yarns); -1: none.
 int loop_at(const Fabric& fabric, const std::vector<int>& loops, double t);
 
+// The same for every point of polyline(fabric, fabric.yarns[yarn], per_segment).
+std::vector<int> loops_at_points(const Fabric& fabric, std::size_t yarn, const std::vector<int>& loops,
+                                 int per_segment);
+
 // What a point tells of its loop, as numbers. `none`: what a point without a loop has.
 struct LoopColumn {
   const char* name;

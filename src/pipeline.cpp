@@ -7,6 +7,7 @@
 #include "experiments/piece_size.hpp"
 #include "geometry/find_repeat.hpp"
 #include "geometry/fit_fabric.hpp"
+#include "geometry/mend_crossings.hpp"
 #include "geometry/periodic_cell.hpp"
 #include "geometry/start_from_cell.hpp"
 #include "geometry/window.hpp"
@@ -85,7 +86,10 @@ CellRange repeat_of(const Knitting& knitting) {
 WantedPart wanted_part(const Knitting& knitting, const PieceRequest& request,
                        const GeometryOptions& options) {
   const YarnGraph& graph = knitting.graph;
-  const PlacedPiece piece = place_type_points(graph, options);
+  // a whole piece has edges, cast-ons and bind-offs, where the template may need other shares
+  const bool whole = !request.window && !request.periodic && knitting.program.window.needles == 0 &&
+                     edges_of(knitting.program) != Edges::periodic;
+  const PlacedPiece piece = whole ? mended_piece(graph, options) : place_type_points(graph, options);
   if (request.window) return window_in_frame(graph, options, piece, *request.window);
   if (request.periodic || edges_of(knitting.program) == Edges::periodic)
     return {cut_periodic_cell(graph, options, piece, repeat_of(knitting)), {}};

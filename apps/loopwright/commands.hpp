@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "outputs/export_options.hpp"
 #include "pipeline.hpp"
 
 namespace loopwright {
@@ -111,6 +112,15 @@ struct RenderCommand {
 };
 int run(const RenderCommand& command);
 
+struct ExportCommand {
+  std::string file, out;
+  std::string format;           // empty: by the suffix
+  std::string repeats = "1x1";  // cells of a periodic fabric
+  ExportOptions options;
+  PieceRequest piece;
+};
+int run(const ExportCommand& command);
+
 struct AnimateCommand {
   std::string file, out;
   std::string model = "loop", style = "structure";
@@ -127,6 +137,7 @@ int run(const AnimateCommand& command);
 
 struct MeasureCommand {
   std::string file, json;
+  PieceRequest piece;  // of curves: their yarn and unit
   int modes = 0;
 };
 int run(const MeasureCommand& command);

@@ -132,6 +132,7 @@ int run(const RelaxCommand& command) {
   if (command.most_iterations) piece->options.most_iterations = *command.most_iterations;
   set_thread_count(command.threads);
 
+  const std::vector<LinkedPair> linked_before = linking_numbers(piece->state.fabric);
   RelaxRun run = relax_watched(*piece, piece->options);
   const bool lets_go = command.let_go && !run.result.fabric.periodic && !run.result.stopped;
   if (lets_go) let_go(*piece, run);
@@ -157,7 +158,11 @@ int run(const RelaxCommand& command) {
   }
   if (!command.json.empty()) write_json(command.json, all);
 
-  const bool broken = say_if_broken(command.file, assessment, relaxed.pass_throughs);
+  bool broken = say_if_broken(command.file, assessment, relaxed.pass_throughs);
+  if (assessment.linked != linked_before) {
+    std::cerr << command.file << ": error: broken: rings are linked otherwise than before\n";
+    broken = true;
+  }
   if (!command.render.empty() && !relaxed.stopped) write_png(command.render, render(relaxed.fabric, picture));
   if (relaxed.stopped) {
     std::cerr << command.file << ": stopped; what was reached is in " << command.out;

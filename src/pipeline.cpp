@@ -1,18 +1,22 @@
 #include "pipeline.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <stdexcept>
 
 #include "experiments/piece_size.hpp"
 #include "geometry/find_repeat.hpp"
 #include "geometry/fit_fabric.hpp"
+#include "geometry/mend_crossings.hpp"
 #include "geometry/periodic_cell.hpp"
 #include "geometry/start_from_cell.hpp"
 #include "geometry/window.hpp"
 #include "machine/run_machine.hpp"
 #include "mechanics/tiled_history.hpp"
 #include "mechanics/yarn_material.hpp"
+#include "notation/material.hpp"
 #include "notation/read_program.hpp"
+#include "outputs/state_material.hpp"
 #include "topology/build_yarn_graph.hpp"
 
 namespace loopwright {
@@ -55,6 +59,9 @@ WantedPart window_in_frame(const YarnGraph& graph, const GeometryOptions& option
 // What mechanics may change of the outer measures where there is neither lattice nor frame.
 constexpr FreeMeasures no_frame{false, false, false};
 
+// Of yarn on yarn, where the yarn's data do not state it: the middle of what is measured.
+constexpr double usual_friction = 0.25;
+
 Edges edges_of(const Program& program) { return program.settings.edges.value_or(Edges::bound_off); }
 
 // Whether nothing holds the piece's border: mechanics has no frame to move then, and sizes are those of the
@@ -79,7 +86,10 @@ CellRange repeat_of(const Knitting& knitting) {
 WantedPart wanted_part(const Knitting& knitting, const PieceRequest& request,
                        const GeometryOptions& options) {
   const YarnGraph& graph = knitting.graph;
-  const PlacedPiece piece = place_type_points(graph, options);
+  // a whole piece has edges, cast-ons and bind-offs, where the template may need other shares
+  const bool whole = !request.window && !request.periodic && knitting.program.window.needles == 0 &&
+                     edges_of(knitting.program) != Edges::periodic;
+  const PlacedPiece piece = whole ? mended_piece(graph, options) : place_type_points(graph, options);
   if (request.window) return window_in_frame(graph, options, piece, *request.window);
   if (request.periodic || edges_of(knitting.program) == Edges::periodic)
     return {cut_periodic_cell(graph, options, piece, repeat_of(knitting)), {}};
@@ -122,8 +132,29 @@ Fabric first_geometry(const Knitting& knitting, const PieceRequest& request) {
   return fabric;
 }
 
+ImportedCurves import_curves(const std::filesystem::path& file, const PieceRequest& request,
+                             Diagnostics& diagnostics) {
+  YarnData yarn;
+  read_yarn(request.curve_yarn, {}, yarn, diagnostics);
+  ImportedCurves imported;
+  if (!diagnostics.ok()) return imported;
+  CurveOptions options;
+  options.unit_mm = request.curve_unit_mm;
+  options.diameter_mm = yarn.diameter_mm;
+  options.linear_density_tex = yarn.linear_density_tex.value_or(0);
+  options.colour = yarn.colour;
+  imported.curves = fabric_of_curves(read_curve_file(file), options);
+  Fabric& fabric = imported.curves.fabric;
+  fabric.name = file.stem().string();
+  imported.options.model.material = yarn_material(yarn, fabric.diameter_mm);
+  imported.options.model.material.friction =
+      request.friction.value_or(yarn.friction_coefficient.value_or(usual_friction));
+  imported.options.model.free = no_frame;
+  imported.options.plate_room = -1;  // it need not be flat
+  return imported;
+}
+
 RelaxOptions relax_options(const Fabric& fabric, const Program& program, const PieceRequest& request) {
-  constexpr double usual_friction = 0.25;
   const YarnData& yarn = reference_yarn(program);
   RelaxOptions options;
   options.model.material = yarn_material(yarn, fabric.diameter_mm);
@@ -169,19 +200,15 @@ RelaxOptions relax_options(const State& state) {
     return found->second;
   };
   RelaxOptions options;
-  YarnMaterial& material = options.model.material;
-  material.stretch_stiffness = number("stretch_stiffness");
-  material.bend_stiffness = number("bend_stiffness");
-  material.contact.outer = number("contact_outer");
-  material.contact.core = number("contact_core");
-  material.contact.stiffness = number("contact_stiffness");
-  material.contact.exponent = number("contact_exponent");
-  material.friction = number("friction");
-  if (state.numbers.contains("reference_bend_N_m2"))
-    material.reference_bend_N_m2 = number("reference_bend_N_m2");
+  std::string missing;
+  const std::optional<YarnMaterial> material = state_material(state, &missing);
+  if (!material) number(missing.c_str());  // says so
+  options.model.material = *material;
   if (state.numbers.contains("plate_stiffness"))
     options.model.plates = {number("plate_stiffness"), number("plate_low"), number("plate_high")};
   options.grow_in = number("radius") < 1;
+  if (state.numbers.contains("framed") && number("framed") == 0) options.model.free = no_frame;
+  if (state.numbers.contains("plate_room")) options.plate_room = number("plate_room");
   return options;
 }
 
@@ -195,7 +222,9 @@ RelaxResult relax_piece(const Fabric& fabric, const RelaxOptions& options) {
 }
 
 Assessment assess(const Fabric& fabric) {
-  return {measure(fabric), check_interlacings(fabric), min_clearance(fabric)};
+  return {measure(fabric), check_interlacings(fabric), min_clearance(fabric),
+          static_cast<int>(std::count_if(fabric.yarns.begin(), fabric.yarns.end(), is_closed)),
+          linking_numbers(fabric)};
 }
 
 JsonObject results(const Assessment& assessment) {
@@ -205,29 +234,37 @@ JsonObject results(const Assessment& assessment) {
   };
   JsonArray yarn_m;
   for (const YarnMeasurement& one : m.yarn) yarn_m.emplace_back(one.length_m);
-  return {{"loops", m.loops},
-          {"yarns", m.yarns},
-          {"wales", m.wales},
-          {"courses", m.courses},
-          {"width_mm", m.width_mm},
-          {"height_mm", m.height_mm},
-          {"thickness_mm", m.thickness_mm},
-          {"wale_spacing_mm", m.wale_spacing_mm},
-          {"course_spacing_mm", m.course_spacing_mm},
-          {"wales_per_cm", m.wales_per_cm},
-          {"courses_per_cm", m.courses_per_cm},
-          {"loop_length_mm", m.loop_length_mm},
-          {"Kc", m.Kc},
-          {"Kw", m.Kw},
-          {"Ks", m.Ks},
-          {"cover_factor", m.cover_factor},
-          {"tightness_factor_sqrt_tex_per_cm", known(m.tightness_factor)},
-          {"yarn_m", std::move(yarn_m)},
-          {"mass_g", known(m.mass_g)},
-          {"areal_density_g_m2", known(m.areal_density_g_m2)},
-          {"interlacings", assessment.interlacings.expected},
-          {"interlacings_intact", assessment.interlacings.intact},
-          {"min_clearance", assessment.clearance.distance}};
+  JsonObject all{{"loops", m.loops},
+                 {"yarns", m.yarns},
+                 {"wales", m.wales},
+                 {"courses", m.courses},
+                 {"width_mm", m.width_mm},
+                 {"height_mm", m.height_mm},
+                 {"thickness_mm", m.thickness_mm},
+                 {"wale_spacing_mm", m.wale_spacing_mm},
+                 {"course_spacing_mm", m.course_spacing_mm},
+                 {"wales_per_cm", m.wales_per_cm},
+                 {"courses_per_cm", m.courses_per_cm},
+                 {"loop_length_mm", m.loop_length_mm},
+                 {"Kc", m.Kc},
+                 {"Kw", m.Kw},
+                 {"Ks", m.Ks},
+                 {"cover_factor", m.cover_factor},
+                 {"tightness_factor_sqrt_tex_per_cm", known(m.tightness_factor)},
+                 {"yarn_m", std::move(yarn_m)},
+                 {"mass_g", known(m.mass_g)},
+                 {"areal_density_g_m2", known(m.areal_density_g_m2)},
+                 {"interlacings", assessment.interlacings.expected},
+                 {"interlacings_intact", assessment.interlacings.intact},
+                 {"min_clearance", assessment.clearance.distance}};
+  if (assessment.closed_yarns > 0) {
+    JsonArray linked;
+    for (const LinkedPair& pair : assessment.linked)
+      linked.emplace_back(JsonArray{pair.a, pair.b, pair.number});
+    all.emplace_back("closed_yarns", assessment.closed_yarns);
+    all.emplace_back("linked_pairs", std::move(linked));
+  }
+  return all;
 }
 
 JsonObject results(const Assessment& assessment, const RelaxResult& relaxed) {
@@ -244,16 +281,10 @@ State saved_state(const Fabric& fabric, const RelaxOptions& options, double radi
   const YarnMaterial& material = options.model.material;
   State state;
   state.fabric = fabric;
-  state.numbers = {{"stretch_stiffness", material.stretch_stiffness},
-                   {"bend_stiffness", material.bend_stiffness},
-                   {"contact_outer", material.contact.outer},
-                   {"contact_core", material.contact.core},
-                   {"contact_stiffness", material.contact.stiffness},
-                   {"contact_exponent", material.contact.exponent},
-                   {"friction", material.friction},
-                   {"framed", is_framed(options) ? 1 : 0},
-                   {"radius", radius}};
-  if (material.reference_bend_N_m2 > 0) state.numbers["reference_bend_N_m2"] = material.reference_bend_N_m2;
+  set_state_material(state, material);
+  state.numbers["framed"] = is_framed(options) ? 1 : 0;
+  state.numbers["radius"] = radius;
+  if (options.plate_room < 0) state.numbers["plate_room"] = options.plate_room;
   return state;
 }
 

@@ -16,9 +16,11 @@
 #include "experiments/measure.hpp"
 #include "geometry/fabric.hpp"
 #include "geometry/interlacing.hpp"
+#include "geometry/linking.hpp"
 #include "machine/knitting_record.hpp"
 #include "mechanics/relax.hpp"
 #include "notation/program.hpp"
+#include "outputs/exchange/curves_to_fabric.hpp"
 #include "outputs/state.hpp"
 #include "outputs/write_json.hpp"
 #include "topology/yarn_graph.hpp"
@@ -38,7 +40,11 @@ struct PieceRequest {
   std::optional<WindowSize> window{};  // a part with held edges
   bool start_from_cell = false;  // held pieces of a repeated notation: relax() starts from the relaxed repeat
   std::optional<double> friction{};  // coefficient of yarn on yarn, instead of the yarn's own
-  double segments_per_loop = 12;     // splines' segments in a loop of the notation's length
+  // Files of curves (BCC, .yarns, OBJ lines), which say little of their yarn: its data as a yarn header
+  // states them, and the length of the file's unit.
+  std::string curve_yarn{};
+  std::optional<double> curve_unit_mm{};
+  double segments_per_loop = 12;  // splines' segments in a loop of the notation's length
 };
 
 // notation -> machine -> topology. What is wrong is said in `diagnostics`; what could be understood is there.
@@ -52,6 +58,16 @@ Knitting knit(const std::filesystem::path& file, const PieceRequest& request, Di
 // geometry: the yarns in space before mechanics. Throws std::invalid_argument where the piece has no such
 // part.
 Fabric first_geometry(const Knitting& knitting, const PieceRequest& request);
+
+// outputs (the reading side): the curves of another program's file as yarns, and how relax() is to treat
+// them: free in space, the ends of open yarns held where they are. What is said of the yarn is read into
+// `diagnostics`. Throws FileError and std::invalid_argument that say what is wrong with the file or missing.
+struct ImportedCurves {
+  CurveFabric curves;
+  RelaxOptions options;
+};
+ImportedCurves import_curves(const std::filesystem::path& file, const PieceRequest& request,
+                             Diagnostics& diagnostics);
 
 // mechanics: how relax() is to treat a first geometry, from the data of its thickest yarn. Friction: what is
 // asked for, else the yarn's own, else 0.25 (the middle of what is measured for wool, cotton and acrylic).
@@ -73,6 +89,8 @@ struct Assessment {
   Measurements measured;
   InterlacingCheck interlacings;
   Clearance clearance;
+  int closed_yarns = 0;            // that end in their own beginning
+  std::vector<LinkedPair> linked;  // those of them that hang in each other
 };
 Assessment assess(const Fabric& fabric);
 

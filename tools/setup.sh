@@ -11,19 +11,20 @@ show_tail() {
   tail -n 40 "$1" >&2
 }
 
-# Package names of tools/packages.txt that dpkg does not know as installed.
+# missing_packages LIST...: package names of the lists that dpkg does not know as installed.
 missing_packages() {
   local wanted installed
-  wanted=$(grep -v '^#' tools/packages.txt | sort)
+  wanted=$(grep -hv '^#' "$@" | sort)
   # dpkg-query fails where it does not know one of the names, and lists the others all the same
   installed=$(xargs dpkg-query -W -f='${Package} ${db:Status-Status}\n' <<< "$wanted" 2> /dev/null |
     sed -n 's/ installed$//p' | sort -u) || true
   grep -vxF "${installed:-none}" <<< "$wanted" || true
 }
 
+# install_packages [LIST...]: those of tools/packages.txt and of further lists.
 install_packages() {
   local names missing=() as_root=()
-  names=$(missing_packages)
+  names=$(missing_packages tools/packages.txt "$@")
   [[ -z $names ]] && return
   mapfile -t missing <<< "$names"
   if [[ $(id -u) != 0 ]]; then

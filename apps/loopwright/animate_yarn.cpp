@@ -15,9 +15,9 @@
 #include "interrupt.hpp"
 #include "machine/run_machine.hpp"
 #include "notation/read_program.hpp"
+#include "outputs/exchange/write_vtp.hpp"
 #include "outputs/image.hpp"
 #include "outputs/write_vtk.hpp"
-#include "outputs/write_vtk_yarns.hpp"
 #include "progress_bar.hpp"
 #include "topology/build_yarn_graph.hpp"
 
@@ -211,7 +211,7 @@ int animate_yarn(const AnimateCommand& command) {
     const int frame = static_cast<int>(k);
     if (!command.no_pictures && !interrupted())
       write_png(folder / frame_name(frame, ".png"), render(moments[k].fabric, camera, picture));
-    write_vtp(folder / frame_name(frame, ".vtp"), moments[k].fabric);
+    write_vtp(folder / frame_name(frame, ".vtp"), State{moments[k].fabric, {}, {}});
     series.emplace_back(moments[k].time_s, frame_name(frame, ".vtp"));
     bar.show(static_cast<double>(k + 1) / static_cast<double>(moments.size()));
   }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "outputs/export_options.hpp"
 #include "pipeline.hpp"
 
 namespace loopwright {
@@ -85,8 +86,9 @@ struct RelaxCommand {
   std::string file, out, json, render;
   PieceRequest piece{.start_from_cell = true};
   PictureRequest picture;
-  int threads = 0;  // 0: all
-  int modes = 0;    // lowest modes to report, and stability
+  int threads = 0;      // 0: all
+  int modes = 0;        // lowest modes to report, and stability
+  bool let_go = false;  // take the plates of a finite piece away in the end
   std::optional<int> most_iterations;
 };
 int run(const RelaxCommand& command);
@@ -110,6 +112,15 @@ struct RenderCommand {
 };
 int run(const RenderCommand& command);
 
+struct ExportCommand {
+  std::string file, out;
+  std::string format;           // empty: by the suffix
+  std::string repeats = "1x1";  // cells of a periodic fabric
+  ExportOptions options;
+  PieceRequest piece;
+};
+int run(const ExportCommand& command);
+
 struct AnimateCommand {
   std::string file, out;
   std::string model = "loop", style = "structure";
@@ -126,6 +137,7 @@ int run(const AnimateCommand& command);
 
 struct MeasureCommand {
   std::string file, json;
+  PieceRequest piece;  // of curves: their yarn and unit
   int modes = 0;
 };
 int run(const MeasureCommand& command);

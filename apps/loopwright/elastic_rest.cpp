@@ -9,6 +9,14 @@
 
 namespace loopwright {
 
+std::optional<Piece> read_elastic_piece(const std::string& file, const PieceRequest& request) {
+  std::optional<Piece> piece = read_piece(file, names_a_state(file) ? PieceRequest{} : request);
+  if (!piece) return piece;
+  piece->options.model.material.friction = 0;
+  piece->options.model.sample_spacing = fine_samples;
+  return piece;
+}
+
 ElasticRest elastic_rest_of(const std::string& file, const Piece& piece) {
   ProgressBar bar("relaxing");
   RelaxOptions options = piece.options;

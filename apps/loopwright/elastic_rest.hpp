@@ -1,5 +1,6 @@
 // The rest without friction from which stiffness and sensitivities are read.
 #pragma once
+#include <optional>
 #include <string>
 
 #include "files.hpp"
@@ -10,6 +11,9 @@ namespace loopwright {
 // sampled contacts makes the stiffness of plain at rest up to 70 % wrong, at 0.09 d up to 5 %
 // (docs/homogenise.md).
 inline constexpr double fine_samples = 0.09;
+
+// read_piece for that: without friction, with fine samples. A saved state is taken as the piece that it is.
+std::optional<Piece> read_elastic_piece(const std::string& file, const PieceRequest& request);
 
 // Brings a piece to rest without friction, with a bar, and says on standard error what is wrong with it: not
 // at rest, not whole. `status` is exit_good if it can be gone on with.

@@ -9,6 +9,7 @@
 
 #include "experiments/modes.hpp"
 #include "outputs/atomic_file.hpp"
+#include "outputs/exchange/curve_file.hpp"
 #include "outputs/state.hpp"
 #include "outputs/write_fabric.hpp"
 
@@ -20,6 +21,32 @@ std::optional<int> parsed_pixels(std::string_view text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
   return value;
+}
+
+// Curves of another program. What was not said and had to be found is told.
+std::optional<Piece> read_curves(const std::string& file, const PieceRequest& request) {
+  if (request.periodic || request.window)
+    throw std::invalid_argument(file + ": curves are one piece; a window or cell is taken of a notation");
+  Diagnostics diagnostics("--yarn");
+  std::optional<Piece> piece;
+  try {
+    const ImportedCurves imported = import_curves(file, request, diagnostics);
+    if (diagnostics.ok()) {
+      const Fabric& fabric = imported.curves.fabric;
+      std::ostringstream line;
+      line.precision(3);
+      if (imported.curves.diameter_guessed)
+        line << file << ": the yarn's diameter is not said; " << fabric.diameter_mm
+             << " mm is taken, the distance that 95 % of it keep from other curves (--yarn diameter=... says "
+                "it)\n";
+      std::cerr << line.str();
+      piece = Piece{saved_state(fabric, imported.options, 0), imported.options};
+    }
+  } catch (const std::invalid_argument& fault) {
+    throw std::invalid_argument(file + ": " + fault.what());
+  }
+  std::cerr << diagnostics;
+  return piece;
 }
 
 }  // namespace
@@ -41,6 +68,7 @@ std::optional<Piece> read_piece(const std::string& file, const PieceRequest& req
     piece.options = relax_options(piece.state);
     return piece;
   }
+  if (names_curves(file)) return read_curves(file, request);
   Diagnostics diagnostics(file);
   const Knitting knitting = knit(file, request, diagnostics);
   std::optional<Piece> piece;
@@ -58,6 +86,13 @@ std::optional<Piece> read_piece(const std::string& file, const PieceRequest& req
   }
   std::cerr << diagnostics;
   return piece;
+}
+
+std::optional<State> read_fabric(const std::string& file, const PieceRequest& request) {
+  if (names_a_state(file) && !request.periodic && !request.window) return read_state(file);
+  std::optional<Piece> piece = read_piece(file, request);
+  if (!piece) return std::nullopt;
+  return std::move(piece->state);
 }
 
 void require_writable(const std::string& file) {
@@ -89,6 +124,14 @@ std::string summary(const Assessment& assessment) {
   const Measurements& m = assessment.measured;
   std::ostringstream line;
   line.precision(3);
+  if (m.loops == 0) {
+    line << m.yarns << " yarns, " << m.yarn_m << " m, " << m.width_mm << " x " << m.height_mm << " x "
+         << m.thickness_mm << " mm, nearest " << assessment.clearance.distance << " d";
+    if (assessment.closed_yarns > 0)
+      line << ", " << assessment.closed_yarns << " closed, " << assessment.linked.size()
+           << " pairs of them linked";
+    return line.str();
+  }
   line << m.loops << " loops, " << m.width_mm << " x " << m.height_mm << " mm, " << m.wales_per_cm
        << " wales and " << m.courses_per_cm << " courses per cm, loop length " << m.loop_length_mm
        << " mm, Kc " << m.Kc << ", Kw " << m.Kw;

@@ -17,9 +17,12 @@ struct Piece {
 
 bool names_a_state(const std::string& file);
 
-// Reads a saved state, or a notation up to its first geometry. Says what is wrong on standard error; nothing
-// if there was an error.
+// Reads a saved state, curves of another program, or a notation up to its first geometry. Says what is wrong
+// on standard error; nothing if there was an error.
 std::optional<Piece> read_piece(const std::string& file, const PieceRequest& request);
+
+// The same for who only looks at it: a saved state need not say how it is gone on with.
+std::optional<State> read_fabric(const std::string& file, const PieceRequest& request);
 
 // Throws FileError if a file of that name could not be written, before long work is done for it. Empty and
 // "-" pass.

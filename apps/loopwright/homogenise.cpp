@@ -1,11 +1,13 @@
 // loopwright homogenise: a cell as a membrane.
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <sstream>
 #include <stdexcept>
 
 #include "base/parallel.hpp"
 #include "elastic_rest.hpp"
+#include "experiments/curl.hpp"
 #include "experiments/membrane.hpp"
 #include "experiments/membrane_law.hpp"
 #include "interrupt.hpp"
@@ -86,6 +88,18 @@ JsonObject json_of(const MembraneStiffness& s) {
           {"wale_poisson", s.wale_poisson}};
 }
 
+// Cells with yarns that do not close along their courses have none.
+void add_curl_moment(const Fabric& cell, const RelaxOptions& options, JsonObject& all) {
+  const double unit =
+      options.model.material.reference_bend_N_m2 / std::pow(cell.diameter_mm * 1e-3, 2);  // B/d^2 in N
+  try {
+    const CurlMoment moment = curl_moment(cell, options.model);
+    all.emplace_back("curl_moment_N", std::vector<double>{unit * moment.course, unit * moment.wale});
+  } catch (const std::invalid_argument&) {
+    all.emplace_back("curl_moment_N", nullptr);
+  }
+}
+
 Plot plot_of(const std::string& file, const Pull& course, const Pull& wale) {
   Plot plot{file + ", pulled one way", "strain", "force per length, N/m", {}};
   for (const auto& [name, pull] : {std::pair("along the courses", &course), {"along the wales", &wale}}) {
@@ -126,12 +140,8 @@ int run(const HomogeniseCommand& command) {
   if (command.csv == "-" && command.json == "-")
     throw std::invalid_argument("CSV and JSON cannot both go to standard output");
   StrainGrid grid{with_zero(command.course), with_zero(command.wale), with_zero(command.shear), command.step};
-  PieceRequest request = command.piece;
-  if (names_a_state(command.file)) request = {};
-  std::optional<Piece> piece = read_piece(command.file, request);
+  const std::optional<Piece> piece = read_elastic_piece(command.file, command.piece);
   if (!piece) return exit_error;
-  piece->options.model.material.friction = 0;
-  piece->options.model.sample_spacing = fine_samples;
   set_thread_count(command.threads);
 
   const InterruptGuard guard;
@@ -164,6 +174,7 @@ int run(const HomogeniseCommand& command) {
   if (!command.json.empty()) {
     JsonObject all = results(rest.assessment, rest.relaxed);
     for (auto& [key, value] : json_of(stiffness)) all.emplace_back(key, std::move(value));
+    add_curl_moment(rest.relaxed.fabric, options, all);
     all.emplace_back("course_pull", json_of(course));
     all.emplace_back("wale_pull", json_of(wale));
     if (points.size() >= 8) all.emplace_back("law", json_of(fit_membrane(points)));

@@ -7,6 +7,7 @@
 #include <iostream>
 
 #include "commands.hpp"
+#include "outputs/write_fabric.hpp"
 
 namespace {
 
@@ -22,6 +23,7 @@ struct Commands {
   HomogeniseCommand homogenise;
   SensitivityCommand sensitivity;
   RenderCommand render;
+  ExportCommand export_;
   AnimateCommand animate;
   MeasureCommand measure;
 };
@@ -35,6 +37,18 @@ void add_piece_options(CLI::App& command, PieceRequest& piece) {
           "A part from the middle with held edges, in wales x courses: 16x16, allx16, 16xall")
       ->type_name("WxC")
       ->excludes(periodic);
+}
+
+void add_curve_options(CLI::App& command, PieceRequest& piece) {
+  const std::string group = "Curves (.bcc, .yarns, .obj)";
+  command
+      .add_option("--yarn", piece.curve_yarn, "The yarn, as a fabric file's header says it: diameter=0.5 ...")
+      ->type_name("DATA")
+      ->group(group);
+  command.add_option("--unit", piece.curve_unit_mm, "Length of the file's unit (default: 1)")
+      ->type_name("MM")
+      ->check(CLI::PositiveNumber)
+      ->group(group);
 }
 
 void add_picture_options(CLI::App& command, PictureRequest& picture) {
@@ -202,8 +216,11 @@ void add_commands(CLI::App& app, Commands& commands, Action& action) {
   build->callback([&] { action = [&] { return run(commands.build); }; });
 
   CLI::App* relax = app.add_subcommand("relax", "Bring the cloth to equilibrium");
-  relax->add_option("FILE", commands.relax.file, "Knitout or fabric file, or a saved state to go on with")
+  relax
+      ->add_option("FILE", commands.relax.file,
+                   "Knitout or fabric file, curves, or a saved state to go on with")
       ->required();
+  add_curve_options(*relax, commands.relax.piece);
   relax->add_option("-o,--out", commands.relax.out, "What to write: the suffix chooses the format")
       ->type_name("OUT")
       ->required();
@@ -230,6 +247,8 @@ void add_commands(CLI::App& app, Commands& commands, Action& action) {
   relax->add_option("--most-iterations", commands.relax.most_iterations, "Stop after so many Newton steps")
       ->check(CLI::Range(1, 1'000'000));
   add_modes_option(*relax, commands.relax.modes);
+  relax->add_flag("--let-go", commands.relax.let_go,
+                  "In the end take away the plates between which a finite piece lies: plain curls");
   relax->callback([&] { action = [&] { return run(commands.relax); }; });
 
   CLI::App* stretch =
@@ -280,7 +299,9 @@ void add_commands(CLI::App& app, Commands& commands, Action& action) {
 
   CLI::App* render =
       app.add_subcommand("render", "Draw a picture of a file's first geometry or of a saved state");
-  render->add_option("FILE", commands.render.file, "Knitout or fabric file, or a saved state")->required();
+  render->add_option("FILE", commands.render.file, "Knitout or fabric file, curves, or a saved state")
+      ->required();
+  add_curve_options(*render, commands.render.piece);
   render->add_option("-o,--out", commands.render.out, "The picture")->type_name("PNG")->required();
   add_piece_options(*render, commands.render.piece);
   add_picture_options(*render, commands.render.picture);
@@ -326,8 +347,40 @@ void add_commands(CLI::App& app, Commands& commands, Action& action) {
   add_loop_options(*animate, commands.animate.loop);
   animate->callback([&] { action = [&] { return run(commands.animate); }; });
 
-  CLI::App* measure = app.add_subcommand("measure", "Measure a saved state");
-  measure->add_option("STATE", commands.measure.file, "A saved state")->required();
+  CLI::App* export_ = app.add_subcommand("export", "Write a fabric in the format of another program");
+  export_->add_option("FILE", commands.export_.file, "Saved state, knitout or fabric file, or curves")
+      ->required();
+  export_->add_option("-o,--out", commands.export_.out, "What to write: the suffix chooses the format")
+      ->type_name("OUT")
+      ->required();
+  std::string names;
+  for (const FormatEntry& entry : fabric_formats())
+    names.append("\n").append(entry.name).append(": ").append(entry.what);
+  export_
+      ->add_option("--format", commands.export_.format,
+                   "The format, where the suffix does not say it:" + names)
+      ->type_name("NAME");
+  export_
+      ->add_option("--per-segment", commands.export_.options.per_segment,
+                   "Points or rings on each of a loop's dozen spline segments")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
+  export_->add_option("--sides", commands.export_.options.sides, "Corners of a tube's cross-section")
+      ->check(CLI::Range(3, 256))
+      ->capture_default_str();
+  export_->add_option("--repeats", commands.export_.repeats, "Cells of a periodic fabric, in columns x rows")
+      ->type_name("CxR")
+      ->capture_default_str();
+  export_->add_flag("--quadratic", commands.export_.options.quadratic_beams,
+                    "Beam elements of three nodes (B32), as CalculiX always gets them");
+  add_piece_options(*export_, commands.export_.piece);
+  add_curve_options(*export_, commands.export_.piece);
+  export_->callback([&] { action = [&] { return run(commands.export_); }; });
+
+  CLI::App* measure = app.add_subcommand("measure", "Measure a saved state or curves");
+  measure->add_option("STATE", commands.measure.file, "A saved state, or curves (.bcc, .yarns, .obj)")
+      ->required();
+  add_curve_options(*measure, commands.measure.piece);
   measure
       ->add_option("--json", commands.measure.json,
                    "Write measurements as JSON to a file, - for standard output")

@@ -1,15 +1,19 @@
-// loopwright measure: sizes, densities and the interlacing check of a saved state.
+// loopwright measure: sizes, densities and the interlacing check of a saved state, or of curves.
 #include <stdexcept>
 
 #include "files.hpp"
+#include "outputs/exchange/curve_file.hpp"
 
 namespace loopwright {
 
 int run(const MeasureCommand& command) {
-  if (!names_a_state(command.file))
-    throw std::invalid_argument(command.file + ": measure takes a saved state; relax or build makes one");
+  if (!names_a_state(command.file) && !names_curves(command.file))
+    throw std::invalid_argument(command.file +
+                                ": measure takes a saved state (relax or build makes one) or curves");
   require_writable(command.json);
-  const State state = read_state(command.file);
+  const std::optional<State> read = read_fabric(command.file, command.piece);
+  if (!read) return exit_error;
+  const State& state = *read;
   const Assessment assessment = assess(state.fabric);
 
   // what the run that made the state found, beside what is measured now

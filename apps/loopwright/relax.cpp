@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "base/parallel.hpp"
+#include "experiments/curl.hpp"
 #include "files.hpp"
 #include "interrupt.hpp"
 #include "outputs/image.hpp"
@@ -76,6 +77,35 @@ RelaxRun relax_watched(const Piece& piece, RelaxOptions options) {
   return run;
 }
 
+// Goes on without plates, friction keeping its history.
+void let_go(Piece& piece, RelaxRun& run) {
+  RelaxOptions& options = piece.options;
+  piece.state.fabric = run.result.fabric;
+  options.grow_in = false;
+  options.plate_room = -1;
+  options.model.plates = {};
+  options.history = run.result.history;
+  const RelaxResult between = std::move(run.result);
+  run = relax_watched(piece, options);
+  run.result.newton_iterations += between.newton_iterations;
+  run.result.linear_iterations += between.linear_iterations;
+  run.result.pass_throughs += between.pass_throughs;
+}
+
+// Curvatures of cloth that was let go, for people and in 1/mm; a piece too small for them says nothing.
+void tell_curl(const std::string& file, const Fabric& fabric, JsonObject& all, std::ostream& out) {
+  if (loop_curvatures(fabric).empty()) return;
+  const Curl found = curl(fabric);
+  all.emplace_back("course_curvature_per_mm", found.course / fabric.diameter_mm);
+  all.emplace_back("wale_curvature_per_mm", found.wale / fabric.diameter_mm);
+  std::ostringstream line;
+  line.precision(2);
+  line << file << ": curvature along courses " << found.course / fabric.diameter_mm << ", along wales "
+       << found.wale / fabric.diameter_mm << " per mm (toward the face positive), over " << found.loops
+       << " loops\n";
+  out << line.str();
+}
+
 // Counts of the runs before this one, if the piece is a state that is gone on with.
 void add_earlier_counts(const State& earlier, RelaxResult& result) {
   const auto count = [&earlier](const char* key) {
@@ -102,7 +132,10 @@ int run(const RelaxCommand& command) {
   if (command.most_iterations) piece->options.most_iterations = *command.most_iterations;
   set_thread_count(command.threads);
 
+  const std::vector<LinkedPair> linked_before = linking_numbers(piece->state.fabric);
   RelaxRun run = relax_watched(*piece, piece->options);
+  const bool lets_go = command.let_go && !run.result.fabric.periodic && !run.result.stopped;
+  if (lets_go) let_go(*piece, run);
   add_earlier_counts(piece->state, run.result);
   const RelaxResult& relaxed = run.result;
   write_fabric(command.out, saved_state(relaxed, piece->options, run.radius));
@@ -115,6 +148,7 @@ int run(const RelaxCommand& command) {
        << " Newton steps, " << wall_s << " s\n";
   people(command.json) << line.str();
   JsonObject all = results(assessment, relaxed);
+  if (lets_go) tell_curl(command.file, relaxed.fabric, all, people(command.json));
   all.emplace_back("wall_s", wall_s);
   all.emplace_back("peak_memory_mb", peak_memory_mb());
   if (command.modes > 0 && !relaxed.stopped) {
@@ -124,7 +158,11 @@ int run(const RelaxCommand& command) {
   }
   if (!command.json.empty()) write_json(command.json, all);
 
-  const bool broken = say_if_broken(command.file, assessment, relaxed.pass_throughs);
+  bool broken = say_if_broken(command.file, assessment, relaxed.pass_throughs);
+  if (assessment.linked != linked_before) {
+    std::cerr << command.file << ": error: broken: rings are linked otherwise than before\n";
+    broken = true;
+  }
   if (!command.render.empty() && !relaxed.stopped) write_png(command.render, render(relaxed.fabric, picture));
   if (relaxed.stopped) {
     std::cerr << command.file << ": stopped; what was reached is in " << command.out;

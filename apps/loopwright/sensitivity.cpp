@@ -76,12 +76,8 @@ int run(const SensitivityCommand& command) {
     throw std::invalid_argument("CSV and JSON cannot both go to standard output");
   std::vector<Deviation> deviations;
   for (const std::string& text : command.deviations) deviations.push_back(parsed_deviation(text));
-  PieceRequest request = command.piece;
-  if (names_a_state(command.file)) request = {};
-  std::optional<Piece> piece = read_piece(command.file, request);
+  const std::optional<Piece> piece = read_elastic_piece(command.file, command.piece);
   if (!piece) return exit_error;
-  piece->options.model.material.friction = 0;
-  piece->options.model.sample_spacing = fine_samples;
   set_thread_count(command.threads);
 
   const InterruptGuard guard;

@@ -67,6 +67,8 @@ int run(const StretchCommand& command) {
   const StretchTest test = stretch_test(command);
   std::optional<Piece> piece = read_piece(command.file, command.piece);
   if (!piece) return exit_error;
+  if (piece->state.fabric.loops.empty())
+    throw std::invalid_argument(command.file + ": a stretch test needs loops, and these are curves without");
   set_thread_count(command.threads);
 
   const InterruptGuard guard;

@@ -42,10 +42,21 @@ double mean_loop_length(const Fabric& fabric) {
   return count > 0 ? total / count : std::numeric_limits<double>::quiet_NaN();
 }
 
+// What is measured of curves whose loops are not known.
+std::vector<LoopSpan> whole_yarns(const Fabric& fabric) {
+  std::vector<LoopSpan> spans(fabric.yarns.size());
+  for (std::size_t y = 0; y < spans.size(); ++y) {
+    spans[y].yarn = static_cast<int>(y);
+    spans[y].end = fabric.yarns[y].segments();
+  }
+  return spans;
+}
+
 void measure_yarns(const Fabric& fabric, Measurements& m) {
   double mass = 0;
   bool weighed = true;
-  for (const LoopSpan& span : fabric.loops) {
+  const std::vector<LoopSpan> stretches = fabric.loops.empty() ? whole_yarns(fabric) : fabric.loops;
+  for (const LoopSpan& span : stretches) {
     const FabricYarn& piece = fabric.yarns[static_cast<std::size_t>(span.yarn)];
     auto known = std::find_if(m.yarn.begin(), m.yarn.end(), [&](const YarnMeasurement& one) {
       return piece.yarn.valid() && one.yarn == piece.yarn;
@@ -63,8 +74,9 @@ void measure_yarns(const Fabric& fabric, Measurements& m) {
     }
   }
   m.yarns = static_cast<int>(m.yarn.size());
-  if (!weighed || fabric.loops.empty()) return;
+  if (!weighed || stretches.empty()) return;
   m.mass_g = mass;
+  if (fabric.loops.empty()) return;  // nor is it known what is cloth
   m.areal_density_g_m2 = mass / (m.width_mm * m.height_mm) * 1e6;
   const double tex = mass / m.yarn_m * 1e3;  // the mean one, where yarns differ
   m.tightness_factor = std::sqrt(tex) / (0.1 * m.loop_length_mm);
@@ -82,8 +94,12 @@ Measurements measure(const Fabric& fabric) {
   m.width_mm = fabric.width * fabric.diameter_mm;
   m.height_mm = fabric.height * fabric.diameter_mm;
   m.thickness_mm = thickness(fabric) * fabric.diameter_mm;
-  m.wale_spacing_mm = m.width_mm / m.wales;
-  m.course_spacing_mm = m.height_mm / m.courses;
+  // curves of another program come without wales and courses: their spacings are not known
+  const auto each = [](double length, double count) {
+    return count > 0 ? length / count : std::numeric_limits<double>::quiet_NaN();
+  };
+  m.wale_spacing_mm = each(m.width_mm, m.wales);
+  m.course_spacing_mm = each(m.height_mm, m.courses);
   m.wales_per_cm = 10 / m.wale_spacing_mm;
   m.courses_per_cm = 10 / m.course_spacing_mm;
 

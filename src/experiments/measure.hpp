@@ -34,6 +34,8 @@ struct Measurements {
   std::optional<double> tightness_factor;            // sqrt(tex) / loop length in cm; absent as above
 };
 
+// A fabric without loops (curves that another program made): whole yarns are measured, width and height are
+// the fabric's own, and what belongs to wales, courses and loops is NaN or absent.
 // Throws std::invalid_argument if the fabric has no yarn or a point that is not finite.
 Measurements measure(const Fabric& fabric);
 

@@ -70,6 +70,14 @@ std::vector<Chord> chords_of(const Fabric& fabric) {
   return chords;
 }
 
+// Rest length between two chords of one yarn; round a ring the shorter way.
+double distance_along(const Fabric& fabric, const Chord& p, const Chord& q) {
+  const double apart = std::abs(p.along - q.along);
+  const FabricYarn& yarn = fabric.yarns[static_cast<std::size_t>(p.yarn)];
+  const bool ring = yarn.periodic && yarn.shift == std::array<int, 2>{0, 0} && !p.image && !q.image;
+  return ring ? std::min(apart, yarn.segments() * yarn.segment_rest_length - apart) : apart;
+}
+
 // Images that come within `reach` of the cell's own yarns.
 void add_images(const Fabric& fabric, double reach, std::vector<Chord>& chords) {
   Box box;
@@ -159,7 +167,7 @@ Clearance min_clearance(const Fabric& fabric) {
         const Chord& p = own[k];
         const Chord& q = chords[other];
         if (!q.image && other <= k) return;
-        if (p.yarn == q.yarn && std::abs(p.along - q.along) < same_yarn_reach) return;
+        if (p.yarn == q.yarn && distance_along(fabric, p, q) < same_yarn_reach) return;
         const Nearest nearest = segment_distance(p, q);
         if (nearest.distance >= best.distance || nearest.distance > reach) return;
         best.distance = nearest.distance;

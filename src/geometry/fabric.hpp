@@ -25,6 +25,9 @@ struct LoopSpan {
   LoopKind kind = LoopKind::knit;
   StitchSide side = StitchSide::front;
   Direction direction = Direction::right;  // of its yarn when it was formed
+  int course = -1;                         // course_numbers(); -1: not known
+  double slot = 0;                         // where it was formed, in needles on the common axis
+  Bed bed = Bed::front;                    // formed on
 };
 
 struct FabricYarn {

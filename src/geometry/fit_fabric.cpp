@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "geometry/centreline.hpp"
+#include "topology/courses.hpp"
 
 namespace loopwright {
 namespace {
@@ -36,20 +37,6 @@ std::vector<Vec3> equal_samples(const Centreline& line, const std::vector<double
     samples.push_back(line.position(piece, step > 0 ? std::clamp((at - rest[piece]) / step, 0.0, 1.0) : 0));
   }
   return samples;
-}
-
-std::vector<Vec3> periodic_control_points(const std::vector<Vec3>& samples, const Vec3& shift) {
-  // sample k = (q_k + 4 q_(k+1) + q_(k+2)) / 6, unknowns x_k = q_(k+1); q_0 = x_(n-1) - shift
-  const std::size_t n = samples.size();
-  std::vector<double> lower(n, 1), diagonal(n, 4), upper(n, 1);
-  std::vector<Vec3> right = samples;
-  for (Vec3& each : right) each *= 6;
-  right[0] += shift;
-  right[n - 1] -= shift;
-  const std::vector<Vec3> x = solve_cyclic_tridiagonal(lower, diagonal, upper, right);
-  std::vector<Vec3> control{x[n - 1] - shift};
-  control.insert(control.end(), x.begin(), x.end() - 1);
-  return control;
 }
 
 // Few segments cannot go through everything: interpolation at the knots alone cuts the bends between them and
@@ -113,7 +100,8 @@ void hold_control_points(const CurveYarn& curve, const std::vector<double>& rest
 }
 
 void add_spans(const CurveYarn& curve, const std::vector<double>& rest, const YarnGraph& graph,
-               int yarn_index, double segment, std::vector<LoopSpan>& spans) {
+               const std::vector<int>& courses, int yarn_index, double segment,
+               std::vector<LoopSpan>& spans) {
   const std::size_t n = curve.points.size();
   std::size_t begin = 0;
   while (begin + 1 < n || (curve.periodic && begin < n)) {
@@ -138,6 +126,9 @@ void add_spans(const CurveYarn& curve, const std::vector<double>& rest, const Ya
     span.kind = loop.kind;
     span.side = loop.side;
     span.direction = loop.direction;
+    span.course = courses[span.loop.position()];
+    span.slot = loop.slot;
+    span.bed = loop.bed;
     spans.push_back(span);
     begin = end;
     if (end >= n) break;
@@ -145,6 +136,20 @@ void add_spans(const CurveYarn& curve, const std::vector<double>& rest, const Ya
 }
 
 }  // namespace
+
+std::vector<Vec3> periodic_control_points(const std::vector<Vec3>& samples, const Vec3& shift) {
+  // sample k = (q_k + 4 q_(k+1) + q_(k+2)) / 6, unknowns x_k = q_(k+1); q_0 = x_(n-1) - shift
+  const std::size_t n = samples.size();
+  std::vector<double> lower(n, 1), diagonal(n, 4), upper(n, 1);
+  std::vector<Vec3> right = samples;
+  for (Vec3& each : right) each *= 6;
+  right[0] += shift;
+  right[n - 1] -= shift;
+  const std::vector<Vec3> x = solve_cyclic_tridiagonal(lower, diagonal, upper, right);
+  std::vector<Vec3> control{x[n - 1] - shift};
+  control.insert(control.end(), x.begin(), x.end() - 1);
+  return control;
+}
 
 std::vector<Vec3> open_control_points(const std::vector<Vec3>& samples) {
   const std::size_t n = samples.size();  // samples at t = 0 .. n - 1; control points n + 2
@@ -173,6 +178,7 @@ Fabric fit_fabric(const YarnCurves& curves, const YarnGraph& graph, const Geomet
   fabric.courses = curves.courses;
   fabric.interlacings = curves.interlacings;
   const double wanted = options.loop_length / fit.segments_per_loop;
+  const std::vector<int> courses = course_numbers(graph);
   for (const CurveYarn& curve : curves.yarns) {
     FabricYarn yarn;
     yarn.yarn = curve.yarn;
@@ -195,7 +201,7 @@ Fabric fit_fabric(const YarnCurves& curves, const YarnGraph& graph, const Geomet
     yarn.control_points = curve.periodic ? periodic_control_points(knots, shift) : open_control_points(knots);
     approach_samples(fabric, equal_samples(line, rest, curve.periodic, segments * samples_per_segment), yarn);
     hold_control_points(curve, rest, yarn);
-    add_spans(curve, rest, graph, static_cast<int>(fabric.yarns.size()), yarn.segment_rest_length,
+    add_spans(curve, rest, graph, courses, static_cast<int>(fabric.yarns.size()), yarn.segment_rest_length,
               fabric.loops);
     fabric.yarns.push_back(std::move(yarn));
   }

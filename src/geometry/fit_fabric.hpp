@@ -17,5 +17,7 @@ Fabric fit_fabric(const YarnCurves& curves, const YarnGraph& graph, const Geomet
 // Control points of the open uniform cubic B-spline through places (>= 2) at whole parameters, without
 // curvature at its ends.
 std::vector<Vec3> open_control_points(const std::vector<Vec3>& samples);
+// Those of a periodic one (>= 3 places), whose next period starts at samples[0] + shift.
+std::vector<Vec3> periodic_control_points(const std::vector<Vec3>& samples, const Vec3& shift);
 
 }  // namespace loopwright

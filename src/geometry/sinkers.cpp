@@ -71,7 +71,9 @@ class SinkerPlacer {
       const Rotation turn = layout.lower_turn(from);
       if (both_ways) middle -= turn.y * (2 * sy_);
       // A turn at a selvedge swings out a little.
-      if (exit_side(from) == entry_side(to)) middle += turn.x * (exit_side(from) * 0.5 * sx_);
+      const bool turns = exit_side(from) == entry_side(to);
+      if (turns) middle += turn.x * (exit_side(from) * 0.5 * sx_);
+      if (both_ways && turns) middle = outside_legs(first, turn, exit_side(from), middle);
       sinker.points = {point(from, LoopPart::sinker, middle)};
       return sinker;
     }
@@ -108,6 +110,24 @@ class SinkerPlacer {
     const double z = sign.s * std::min(sign.s * sign.foot_layer - 1.5, foot);
     const double high = sy_ * layout.y_scale_lower[i];
     return layout.from_lower(id, {4 * side * sx_, -3 * high, z * r_}, 1.5 * high);
+  }
+  // Whether a loop that stands upright leans away from a side, so that its legs lie on it.
+  bool comes_from(LoopId id, double side) const {
+    return !lies_flat(id) && side * piece_.layout.step(id).x < -3 * sx_;
+  }
+
+  // A place beside the heads that a loop is drawn through, moved out past their legs where these lean that
+  // way.
+  Vec3 outside_legs(const Loop& loop, const Rotation& turn, double side, const Vec3& place) const {
+    Vec3 own = turn.transposed(place);
+    for (const LoopId parent : loop.parents) {
+      if (!comes_from(parent, side)) continue;
+      for (const TypePoint& leg : piece_.loops[parent.position()].points) {
+        const Vec3 p = turn.transposed(leg.position);
+        if (std::abs(p.y - own.y) < 2.5 * sy_) own.x = side * std::max(side * own.x, side * p.x + 2 * r_);
+      }
+    }
+    return turn * own;
   }
 
   // How far the yarn goes along the course; the whole distance where the two loops face different ways, as

@@ -107,7 +107,7 @@ class LoopPlacer {
     points.push_back(
         point(id, LoopPart::leg,
               at_lower(id, side * (1.444 + spread), 1.556, sign.lower_leg + low_share * sign.leg_offset)));
-    if (std::abs(leaning(own)) > 0.4 && steepness(own) < 0.3) {
+    if (std::abs(leaning(own)) > 0.4 && is_flat_lying(own)) {
       flat_legs(id, side, points);
       return;
     }
@@ -158,6 +158,18 @@ class LoopPlacer {
     head_half(id, side, head + high_share * sign.leg_offset, points);
   }
 
+  // Whether a loop that leans lies flat, as in the chain of a bind-off.
+  static bool is_flat_lying(const Ends& own) { return steepness(own) < 0.3; }
+
+  // Whether a loop is drawn through one that stands upright and leans away from where `ahead` points.
+  bool meets_parent(LoopId id, double ahead) const {
+    const std::vector<LoopId>& parents = graph_.loop(id).parents;
+    return std::any_of(parents.begin(), parents.end(), [&](LoopId parent) {
+      const Ends of = ends(parent);
+      return ahead * leaning(of) < -0.4 && !is_flat_lying(of);
+    });
+  }
+
   // A loop that lies flat, as in the chain of a bind-off: head and feet are at one level, and both stand
   // upright on their needles. Its lower leg swings out below the head, its upper leg above the feet; both
   // stay clear of the heads that it was drawn through until they are past them, then they take the layer of
@@ -167,7 +179,10 @@ class LoopPlacer {
     const std::size_t i = id.position();
     const Ends own = ends(id);
     const double lean = leaning(own), ahead = lean > 0 ? 1 : -1, length = 8 * std::abs(lean);
-    const double out = sign.lower_leg + 1.3 * sign.s, in = sign.head_layer + sign.c;
+    const double in = sign.head_layer + sign.c;
+    double out = sign.lower_leg + 1.3 * sign.s;
+    // a parent whose legs come from where the loop goes: the lower leg passes before them
+    if (side * lean > 0 && meets_parent(id, ahead)) out += 1.5 * sign.s;
     const auto leg = [&](double along, double y, double z) {
       const double share = along / length;
       const Vec3 base = own.low + own.step() * share;
@@ -210,22 +225,33 @@ class LoopPlacer {
                  at_upper(id, 0, 3 + 0.4 * sign.head_spread, sign.head_layer - 1.5 * sign.c));
   }
 
+  // Whether a tuck lies on the legs of a loop that was drawn through others: not in a cast-on.
+  bool lies_on_stitch(LoopId tuck) const {
+    const Loop& loop = graph_.loop(tuck);
+    if (loop.children.empty()) return true;
+    const std::vector<LoopId>& stack = graph_.loop(loop.children.front()).parents;
+    return std::any_of(stack.begin(), stack.end(),
+                       [&](LoopId id) { return graph_.loop(id).kind != LoopKind::tuck; });
+  }
+
   // A tuck's feet pass through nothing: they stand wide, outside the legs of the loop that the tuck lies on,
-  // and always below its head, however much the loops round it were pulled up.
+  // if any, and always below its head, however much the loops round it were pulled up.
   void tuck_half(LoopId id, double side, std::vector<TypePoint>& points) const {
+    const double wide = lies_on_stitch(id) ? 3.3 : 2.6;
     const LoopSigns& sign = signs_[id.position()];
     const double c = sign.c, s = sign.s, head = sign.head_layer;
     const Rotation turn = layout_.turn(id);
-    Vec3 foot = turn.transposed(at_lower(id, side * 3.4, -1.5, -1.2 * s));
-    const Vec3 upper_leg = turn.transposed(at_upper(id, side * 3.3, -1.556, head + 0.7 * c));
+    Vec3 foot = turn.transposed(at_lower(id, side * (wide + 0.1), -1.5, -1.2 * s));
+    const Vec3 upper_leg = turn.transposed(at_upper(id, side * wide, -1.556, head + 0.7 * c));
     foot.y = std::min(foot.y, upper_leg.y - 2 * sy_);
     Vec3 leg = foot + (upper_leg - foot) * 0.45;
     leg.z = (foot.z + upper_leg.z) / 2 - 0.3 * s * r_;
     points.push_back(point(id, LoopPart::foot, turn * foot));
     points.push_back(point(id, LoopPart::leg, turn * leg));
     points.push_back(point(id, LoopPart::leg, turn * upper_leg));
-    points.push_back(point(id, LoopPart::leg, at_upper(id, side * 3.3, 0, head)));
-    points.push_back(point(id, LoopPart::head, at_upper(id, side * 1.6, 1.7, head - crossing_reach * c)));
+    points.push_back(point(id, LoopPart::leg, at_upper(id, side * wide, 0, head)));
+    points.push_back(
+        point(id, LoopPart::head, at_upper(id, side * (wide - 1.7), 1.7, head - crossing_reach * c)));
   }
 
   const YarnGraph& graph_;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "geometry/layout.hpp"
+#include "geometry/mend_crossings.hpp"
 #include "geometry/type_points.hpp"
 #include "loop_scale/metric_start.hpp"
 #include "loop_scale/tube_walls.hpp"
@@ -117,6 +118,11 @@ bool is_torn(const MassSpringNet& net, const std::vector<Vec3>& start) {
   return torn > few * warps;
 }
 
+// Whether stitches lie on both sides of the cloth.
+bool is_folded(const MassSpringNet& net) {
+  return std::any_of(net.springs.begin(), net.springs.end(), [](const Spring& s) { return s.rest.z != 0; });
+}
+
 // Such a piece laid out by the lengths of its springs instead of its needles, facing as the flat one does on
 // the whole. Empty where that cannot be.
 std::vector<Vec3> metric_places(const YarnGraph& graph, const LoopModel& model) {
@@ -130,20 +136,33 @@ std::vector<Vec3> metric_places(const YarnGraph& graph, const LoopModel& model) 
   return places;
 }
 
+// A start without folds, and the damping of its sheet over the net's.
+struct Start {
+  std::vector<Vec3> places;
+  double damping = 1;
+};
+
+struct FoldedSheet {
+  std::vector<Vec3> places;
+  SettleResult result;  // of the sheet
+};
+
 // From a start without folds to one with them: the piece comes to rest as a sheet, whose springs are as long
 // as the folded ones reach along it, then the stitches of the two beds go to their two sides of the sheet.
 // Folded from the start, ribs and purls of a piece that still has far to go fold any way.
-std::vector<Vec3> folded_sheet(const YarnGraph& graph, const LoopModel& model, const std::vector<Vec3>& start,
-                               const SettleOptions& settling) {
+FoldedSheet folded_sheet(const YarnGraph& graph, const LoopModel& model, const Start& start,
+                         const SettleOptions& settling) {
   MassSpringNet sheet = model.net;
   for (Spring& spring : sheet.springs) {
     const Vec3 along{spring.rest.x, spring.rest.y, 0};
     if (norm(along) > 0.1 * norm(spring.rest)) spring.rest = along;
   }
-  NetState state = state_at_rest(start);
+  sheet.damping *= start.damping;
+  NetState state = state_at_rest(start.places);
   NetKernel kernel(sheet);
-  settle(kernel, sheet, state, settling);
-  std::vector<Vec3> places = positions_of(state);
+  FoldedSheet result{{}, settle(kernel, sheet, state, settling)};
+  std::vector<Vec3>& places = result.places;
+  places = positions_of(state);
   const std::vector<Rotation> turns = turns_of(graph, model, places);
   double depth[3] = {0, 0, 0}, count[3] = {0, 0, 0};  // mean z of a wall
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -155,26 +174,23 @@ std::vector<Vec3> folded_sheet(const YarnGraph& graph, const LoopModel& model, c
     const std::size_t w = static_cast<std::size_t>(model.wall[i] + 1);
     places[i] += turns[i].z * (model.start[i].z - depth[w] / count[w]);
   }
-  return places;
+  return result;
 }
 
-// First curves where the masses are: the type value points are placed anew, round binding points that turn as
-// the cloth does, so that every crossing is as the template has it. (The correlation map would carry along
-// what the flat layout had to do to loops that were moved far.)
-YarnCurves placed_curves(const YarnGraph& graph, const LoopModel& model, const std::vector<Vec3>& places) {
-  const std::vector<Rotation> turns = turns_of(graph, model, places);
-  MovedPlaces moved;
-  for (std::size_t k = 0; k < graph.loops.size(); ++k) {
-    const std::size_t low = at(model.points.lower[k]), high = at(model.points.upper[k]);
-    moved.lower.push_back(places[low]);
-    moved.upper.push_back(places[high]);
-    moved.turn_lower.push_back(turns[low]);
-    moved.turn_upper.push_back(turns[high]);
+// Where a piece starts, and how it comes to rest as a sheet before it folds. Nothing for a sheet without
+// folds: it starts as it is.
+Start start_of(const YarnGraph& graph, const LoopModel& model) {
+  Start start;
+  start.places = round_start(graph, model);
+  if (start.places.empty() && is_torn(model.net, model.start)) start.places = metric_places(graph, model);
+  if (start.places.empty() && is_folded(model.net)) {
+    start.places = model.start;
+    for (std::size_t i = 0; i < start.places.size(); ++i)
+      if (model.wall[i] == 0) start.places[i].z = 0;
+    // slowly: what overshoots in a plane passes through itself
+    start.damping = 5;
   }
-  moved.wall = tube_walls(graph, rounds_of(graph, model.points));
-  const Layout flat = lay_out(graph, model.geometry);
-  return build_yarn_curves(graph, model.geometry, flat,
-                           moved_layout(graph, model.geometry, flat, std::move(moved)));
+  return start;
 }
 
 }  // namespace
@@ -193,22 +209,56 @@ SettleOptions layout_settling() {
   return options;
 }
 
+// First curves where the masses are: the type value points are placed anew, round binding points that turn as
+// the cloth does, so that every crossing is as the template has it. (The correlation map would carry along
+// what the flat layout had to do to loops that were moved far.)
+Layout placed_layout(const YarnGraph& graph, const LoopModel& model, const std::vector<Vec3>& places) {
+  const std::vector<Rotation> turns = turns_of(graph, model, places);
+  MovedPlaces moved;
+  for (std::size_t k = 0; k < graph.loops.size(); ++k) {
+    const std::size_t low = at(model.points.lower[k]), high = at(model.points.upper[k]);
+    moved.lower.push_back(places[low]);
+    moved.upper.push_back(places[high]);
+    moved.turn_lower.push_back(turns[low]);
+    moved.turn_upper.push_back(turns[high]);
+  }
+  moved.wall = tube_walls(graph, rounds_of(graph, model.points));
+  return moved_layout(graph, model.geometry, lay_out(graph, model.geometry), std::move(moved));
+}
+
+YarnCurves placed_curves(const YarnGraph& graph, const LoopModel& model, const std::vector<Vec3>& places) {
+  return build_yarn_curves(graph, model.geometry, lay_out(graph, model.geometry),
+                           placed_layout(graph, model, places));
+}
+
 RelaxedLayout relaxed_layout(const YarnGraph& graph, const Program& program, const LoopModelOptions& options,
                              const SettleOptions& settling) {
-  RelaxedLayout layout{build_loop_model(graph, program, options), {}, {}, {}};
+  RelaxedLayout layout{build_loop_model(graph, program, options)};
   LoopModel& model = layout.model;
-  std::vector<Vec3> start = round_start(graph, model);
-  bool is_sheet = !start.empty();
-  if (!is_sheet && is_torn(model.net, model.start)) {
-    start = metric_places(graph, model);
-    is_sheet = !start.empty();
-  }
-  if (is_sheet) start = folded_sheet(graph, model, start, settling);
-  if (start.empty()) start = model.start;
-  layout.state = state_at_rest(start);
+  const Start start = start_of(graph, model);
+  FoldedSheet sheet{model.start, {}};
+  if (!start.places.empty()) sheet = folded_sheet(graph, model, start, settling);
+  layout.state = state_at_rest(sheet.places);
   NetKernel kernel(model.net);
   layout.result = settle(kernel, model.net, layout.state, settling);
-  layout.curves = placed_curves(graph, model, positions_of(layout.state));
+  const Layout flat = lay_out(graph, model.geometry);
+  Layout placed = placed_layout(graph, model, positions_of(layout.state));
+  const auto wrong = [&](const Layout& of) { return wrong_interlacings(graph, model.geometry, flat, of); };
+  // A net whose parts are at odds (rows of different heights on the two beds) may roll up or fold where cloth
+  // could not, so that yarns change places. If the sheet has fewer wrong interlacings, it is the layout.
+  if (!start.places.empty()) {
+    Layout of_sheet = placed_layout(graph, model, sheet.places);
+    if (wrong(of_sheet) < wrong(placed)) {
+      placed = std::move(of_sheet);
+      layout.state = state_at_rest(sheet.places);
+      layout.result = sheet.result;
+      layout.is_sheet = true;
+    }
+  }
+  constexpr int most_trials = 400;  // few beside the steps to rest
+  MendedLayout mended = mended_layout(graph, model.geometry, flat, std::move(placed), most_trials);
+  layout.wrong = mended.wrong;
+  layout.curves = build_yarn_curves(graph, model.geometry, flat, std::move(mended.layout));
   // the size where it came to rest, as the first geometry counts it
   const auto reach = [](const std::vector<double>& values) {
     const auto [low, high] = std::minmax_element(values.begin(), values.end());

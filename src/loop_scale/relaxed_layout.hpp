@@ -3,6 +3,7 @@
 #pragma once
 #include <vector>
 
+#include "geometry/layout.hpp"
 #include "loop_scale/loop_model.hpp"
 #include "loop_scale/settle.hpp"
 
@@ -10,9 +11,13 @@ namespace loopwright {
 
 struct RelaxedLayout {
   LoopModel model;
-  NetState state;
-  SettleResult result;
-  YarnCurves curves;  // at `state`
+  NetState state{};
+  SettleResult result{};
+  YarnCurves curves{};  // at `state`
+  // whether `state` is the folded sheet from which the net was to relax, because more of its interlacings are
+  // right; `result` is the sheet's then
+  bool is_sheet = false;
+  int wrong = 0;  // interlacings that are not as the machine knitted them, of all
 };
 
 // What a layout needs beside weft and warp springs: shear, else courses slide along each other; folds;
@@ -25,6 +30,10 @@ SettleOptions layout_settling();  // to 2e-4
 RelaxedLayout relaxed_layout(const YarnGraph& graph, const Program& program,
                              const LoopModelOptions& options = layout_options(),
                              const SettleOptions& settling = layout_settling());
+
+// The layout where the masses are, and first curves there. `places`: by binding point, in d.
+Layout placed_layout(const YarnGraph& graph, const LoopModel& model, const std::vector<Vec3>& places);
+YarnCurves placed_curves(const YarnGraph& graph, const LoopModel& model, const std::vector<Vec3>& places);
 
 // A run of loops that neighbours in a course make in one direction on one bed.
 struct CourseMeasure {

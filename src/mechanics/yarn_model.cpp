@@ -30,7 +30,8 @@ void check_yarn(const Fabric& fabric, const FabricYarn& yarn) {
   require(yarn.segments() >= 1, "a yarn needs at least 4 control points (periodic: at least 1)");
   require(!yarn.periodic || yarn.control_points.size() >= 4,
           "a periodic yarn needs at least 4 control points");
-  require(!yarn.periodic || fabric.periodic, "a periodic yarn in a fabric that is not periodic");
+  require(!yarn.periodic || fabric.periodic || yarn.shift == std::array<int, 2>{0, 0},
+          "a periodic yarn in a fabric that is not periodic");
   require(std::isfinite(yarn.segment_rest_length) && yarn.segment_rest_length > 0,
           "the rest length of a yarn must be a positive number");
   require(std::isfinite(yarn.diameter) && yarn.diameter > 0,

@@ -165,6 +165,12 @@ std::vector<char> Writer::bytes() {
 
 Reader::Reader(std::span<char> bytes) : file_(opened(bytes), H5Fclose, "it is not an HDF5 file") {}
 
+bool Reader::has(const std::string& name) const {
+  const std::size_t slash = name.find('/');
+  return (slash == std::string::npos || H5Lexists(file_, name.substr(0, slash).c_str(), H5P_DEFAULT) > 0) &&
+         H5Lexists(file_, name.c_str(), H5P_DEFAULT) > 0;
+}
+
 std::vector<double> Reader::doubles(const std::string& name, int width) const {
   return read<double>(file_, name, width, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE);
 }

@@ -71,7 +71,8 @@ class Writer {
 // Every call checks that the column is there and has the type and width that are asked for.
 class Reader {
  public:
-  explicit Reader(std::span<char> bytes);  // the file's bytes, which must outlive the reader
+  explicit Reader(std::span<char> bytes);   // the file's bytes, which must outlive the reader
+  bool has(const std::string& name) const;  // whether there is such a column
   std::vector<double> doubles(const std::string& name, int width = 1) const;
   std::vector<std::int32_t> integers(const std::string& name, int width = 1) const;
   std::vector<std::uint8_t> octets(const std::string& name) const;

@@ -141,6 +141,9 @@ void put_loops(hdf5::Writer& out, const Fabric& fabric) {
              gathered<std::int32_t>(loops, [](const L& l) { return static_cast<int>(l.side); }));
   out.column("loops/direction",
              gathered<std::int32_t>(loops, [](const L& l) { return static_cast<int>(l.direction); }));
+  out.column("loops/course", gathered<std::int32_t>(loops, [](const L& l) { return l.course; }));
+  out.column("loops/slot", gathered<double>(loops, [](const L& l) { return l.slot; }));
+  out.column("loops/bed", gathered<std::int32_t>(loops, [](const L& l) { return static_cast<int>(l.bed); }));
   using I = PlacedInterlacing;
   const auto& pairs = fabric.interlacings;
   out.column("interlacings/parent", gathered<std::int32_t>(pairs, [](const I& i) { return i.parent.value; }));

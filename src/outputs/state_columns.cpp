@@ -94,6 +94,12 @@ void read_loops(const Reader& in, Fabric& fabric) {
   const auto kinds = in.integers("loops/kind"), sides = in.integers("loops/side");
   const auto directions = in.integers("loops/direction");
   require_rows("loops", ids.size(), yarns, begins, apexes, ends, lines, columns, kinds, sides, directions);
+  // these three came later: older states do without
+  const bool placed = in.has("loops/course");
+  const auto courses = placed ? in.integers("loops/course") : std::vector<std::int32_t>(ids.size(), -1);
+  const auto slots = placed ? in.doubles("loops/slot") : std::vector<double>(ids.size(), 0);
+  const auto beds = placed ? in.integers("loops/bed") : std::vector<std::int32_t>(ids.size(), 0);
+  require_rows("loops", ids.size(), courses, slots, beds);
   for (std::size_t k = 0; k < ids.size(); ++k) {
     LoopSpan loop;
     loop.loop = LoopId(ids[k]);
@@ -106,6 +112,9 @@ void read_loops(const Reader& in, Fabric& fabric) {
     if (sides[k] == 0) throw ContentError("'loops/side' holds an unknown value");
     loop.side = named<StitchSide>(sides[k], -1, 1, "loops/side");
     loop.direction = named<Direction>(directions[k], -1, 1, "loops/direction");
+    loop.course = courses[k];
+    loop.slot = slots[k];
+    loop.bed = named<Bed>(beds[k], 0, static_cast<int>(Bed::back_slider), "loops/bed");
     fabric.loops.push_back(loop);
   }
   const auto parents = in.integers("interlacings/parent"), children = in.integers("interlacings/child");
@@ -168,6 +177,7 @@ std::string fabric_fault(const Fabric& fabric) {
     const std::string which = "loop " + std::to_string(k) + ": ";
     if (loop.yarn < 0 || static_cast<std::size_t>(loop.yarn) >= fabric.yarns.size())
       return which + "its yarn does not exist";
+    if (!std::isfinite(loop.slot)) return which + "its place among the needles is not a number";
     if (!std::isfinite(loop.begin) || !std::isfinite(loop.apex) || !std::isfinite(loop.end) ||
         loop.begin > loop.end)
       return which + "its place on the yarn is not a stretch of it";

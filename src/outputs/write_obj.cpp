@@ -42,7 +42,7 @@ void put_header(std::ostream& out, const Fabric& fabric, const char* what) {
 }
 
 template <class PutYarn>
-void for_each_copy(const Fabric& fabric, const ObjOptions& options, std::ostream& out, PutYarn put_yarn) {
+void for_each_copy(const Fabric& fabric, const ExportOptions& options, std::ostream& out, PutYarn put_yarn) {
   const int columns = fabric.periodic ? options.repeats[0] : 1,
             rows = fabric.periodic ? options.repeats[1] : 1;
   for (std::size_t y = 0; y < fabric.yarns.size(); ++y)
@@ -57,7 +57,7 @@ void for_each_copy(const Fabric& fabric, const ObjOptions& options, std::ostream
 
 }  // namespace
 
-void write_obj_lines(const std::filesystem::path& path, const Fabric& fabric, const ObjOptions& options) {
+void write_obj_lines(const std::filesystem::path& path, const Fabric& fabric, const ExportOptions& options) {
   AtomicFile file(path);
   std::ostream& out = file.stream();
   put_header(out, fabric, "yarn centrelines");
@@ -73,7 +73,7 @@ void write_obj_lines(const std::filesystem::path& path, const Fabric& fabric, co
   file.commit();
 }
 
-void write_obj_tubes(const std::filesystem::path& path, const Fabric& fabric, const ObjOptions& options) {
+void write_obj_tubes(const std::filesystem::path& path, const Fabric& fabric, const ExportOptions& options) {
   AtomicFile file(path);
   std::ostream& out = file.stream();
   put_header(out, fabric, "yarn tubes");

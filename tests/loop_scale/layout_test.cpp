@@ -105,6 +105,20 @@ TEST(relaxed_layout, flat_tube_encloses_less) {
   for (const RoundMeasure& round : round_measures(piece.graph, start)) EXPECT_LT(round.roundness, 0.4);
 }
 
+// Knitted twice as wide as it comes to rest: if the sheet folded while it contracts, its stitches would come
+// to lie on either side.
+TEST(relaxed_layout, rib_stays_flat_with_its_stitches_on_their_sides) {
+  for (const std::vector<std::string>& chart : {std::vector<std::string>{"fb"}, {"fb", "bf"}, {"ffbb"}}) {
+    const Piece piece = piece_of_text(chart_programme(chart, 24, 16));
+    const RelaxedLayout layout = relaxed_layout(piece.graph, piece.program);
+    EXPECT_TRUE(layout.result.settled);
+    EXPECT_EQ(intact(piece, layout), static_cast<int>(piece.graph.interlacings.size())) << chart.front();
+    EXPECT_EQ(layout.wrong, 0);
+    const auto [rear, front] = std::minmax_element(layout.state.z.begin(), layout.state.z.end());
+    EXPECT_LT(*front - *rear, 0.5 * layout.model.yarn.loop_length) << chart.front();
+  }
+}
+
 struct Programme {
   const char* file;
   int broken;  // interlacings that the layout leaves, of all (the first geometry's own beside it)
@@ -138,6 +152,28 @@ INSTANTIATE_TEST_SUITE_P(corpus, real_layout,
                          testing::Values(Programme{"rectangle.knitout", 0}, Programme{"diamond.k", 0}),
                          [](const testing::TestParamInfo<Programme>& of) {
                            std::string name = of.param.file;
+                           std::replace_if(
+                               name.begin(), name.end(), [](char c) { return !std::isalnum(c); }, '_');
+                           return name;
+                         });
+
+// Sharp folds, heads moved by several needles, stacks; and a bind-off of split stitches.
+class ruffled_layout : public testing::TestWithParam<const char*> {};
+
+TEST_P(ruffled_layout, has_all_interlacings) {
+  const std::filesystem::path file = corpus() / "files" / GetParam();
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "the corpus of real programmes is not here";
+  const Piece piece = piece_of_text(text_of(file));
+  const RelaxedLayout layout = relaxed_layout(piece.graph, piece.program);
+  EXPECT_TRUE(layout.result.settled);
+  EXPECT_EQ(layout.wrong, 0);
+  EXPECT_EQ(intact(piece, layout), static_cast<int>(piece.graph.interlacings.size()));
+}
+
+INSTANTIATE_TEST_SUITE_P(corpus, ruffled_layout,
+                         testing::Values("hyperbolic-plane.knitout", "single_color_brioche.k"),
+                         [](const testing::TestParamInfo<const char*>& of) {
+                           std::string name = of.param;
                            std::replace_if(
                                name.begin(), name.end(), [](char c) { return !std::isalnum(c); }, '_');
                            return name;

@@ -52,7 +52,7 @@ void expect_equal(const FabricYarn& a, const FabricYarn& b) {
 }
 
 void expect_equal(const LoopSpan& a, const LoopSpan& b) {
-  const auto& [loop, yarn, begin, apex, end, at, kind, side, direction] = a;
+  const auto& [loop, yarn, begin, apex, end, at, kind, side, direction, course, slot, bed] = a;
   EXPECT_EQ(loop, b.loop);
   EXPECT_EQ(yarn, b.yarn);
   EXPECT_EQ(bits(begin), bits(b.begin));
@@ -62,6 +62,9 @@ void expect_equal(const LoopSpan& a, const LoopSpan& b) {
   EXPECT_EQ(kind, b.kind);
   EXPECT_EQ(side, b.side);
   EXPECT_EQ(direction, b.direction);
+  EXPECT_EQ(course, b.course);
+  EXPECT_EQ(bits(slot), bits(b.slot));
+  EXPECT_EQ(bed, b.bed);
 }
 
 void expect_equal(const Fabric& a, const Fabric& b) {
@@ -110,6 +113,9 @@ State rich_state() {
   fabric.loops[3].kind = LoopKind::split;
   fabric.loops[4].side = StitchSide::rear;
   fabric.loops[5].direction = Direction::left;
+  fabric.loops[5].course = 7;
+  fabric.loops[5].slot = -2.5;
+  fabric.loops[5].bed = Bed::back;
   fabric.interlacings[2].sign = -1;
   fabric.interlacings[2].shift = {-1, 2};
   state.numbers = {

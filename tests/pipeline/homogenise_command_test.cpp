@@ -3,7 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <sstream>
+#include <cmath>
+#include <string>
 
 #include "pipeline/run_command.hpp"
 
@@ -77,6 +78,22 @@ TEST(ModesOption, SaysWhetherClothIsStable) {
   const CommandOutcome measured = run_command({"measure", "g.h5", "--modes", "2"}, folder);
   EXPECT_EQ(measured.status, 0) << measured.err;
   EXPECT_THAT(measured.out, HasSubstr("stable without friction"));
+}
+
+// A rib swatch lies as flat without plates as between them.
+TEST(LetGo, SaysHowThePieceBends) {
+  const TemporaryFolder folder;
+  folder.write(
+      "rib.verm",
+      ";!vermiculation-1\n;;Gauge: 10\n;;Bed-Gap: 2 mm\n;;Yarn-A: wool 2/28 Nm\n;;Loop-Length: 7.4 mm\n"
+      ";;Size: 6 wales x 6 courses\n;;Edges: free\nge\n");
+  const CommandOutcome outcome = run_command(
+      {"relax", "rib.verm", "--friction", "0.4", "--let-go", "-o", "r.h5", "--json", "-"}, folder);
+  EXPECT_THAT(outcome.out, HasSubstr("\"wale_curvature_per_mm\": "));
+  EXPECT_THAT(outcome.err, HasSubstr("curvature along courses"));
+  const std::string key = "\"course_curvature_per_mm\": ";
+  ASSERT_NE(outcome.out.find(key), std::string::npos);
+  EXPECT_LT(std::abs(std::stod(outcome.out.substr(outcome.out.find(key) + key.size()))), 0.1);
 }
 
 }  // namespace

@@ -1,0 +1,83 @@
+#include "mechanics/yarn_forces.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "mechanics/contact/segment_pairs.hpp"
+#include "mechanics/energies/contact.hpp"
+
+namespace loopwright {
+namespace {
+
+std::vector<double> tensions(const Fabric& fabric, const YarnModel& model) {
+  std::vector<double> tension;
+  tension.reserve(static_cast<std::size_t>(model.segments));
+  for (std::size_t y = 0; y < fabric.yarns.size(); ++y)
+    for (int e = 0; e < model.yarns[y].segments; ++e) {
+      const double length = arc_length(fabric, fabric.yarns[y], e, e + 1);
+      tension.push_back(model.yarns[y].stretch_stiffness * (length / model.yarns[y].rest_length - 1));
+    }
+  return tension;
+}
+
+// Contact forces on all samples, B/d^2.
+std::vector<Vec3> sample_forces(const YarnModel& model, const YarnState& state) {
+  std::vector<Vec3> extended;
+  SamplePlaces places;
+  expand(model, state, extended);
+  place_samples(model, extended, places);
+  double thickest = 0;
+  for (const YarnModel::Yarn& yarn : model.yarns) thickest = std::max(thickest, yarn.diameter);
+  std::vector<SegmentPair> pairs;
+  find_segment_pairs(model, state, places, model.contact.outer * thickest, pairs);
+
+  const auto count = static_cast<std::size_t>(model.samples);
+  std::vector<Vec3> forces(static_cast<std::size_t>(model.segments) * count);
+  ContactPairOutput out;
+  for (const SegmentPair& pair : pairs) {
+    const YarnModel::Yarn &a = model.yarn_of(pair.a), &b = model.yarn_of(pair.b);
+    const auto first_a = static_cast<std::size_t>(pair.a) * count,
+               first_b = static_cast<std::size_t>(pair.b) * count;
+    const auto from = [&](std::size_t first) {
+      return SampleView{&places.x[first], &places.y[first], &places.z[first]};
+    };
+    const Vec3 image = state.lattice(pair.m, pair.n);
+    ContactPairInput in{from(first_a), from(first_b), {image.x, image.y, image.z}};
+    in.count = model.samples;
+    in.weight = a.rest_length / model.samples * b.rest_length / model.samples;
+    if (pair.same_yarn) {
+      in.arc_offset = pair.arc_offset;
+      in.spacing = a.rest_length / model.samples;
+      in.excluded = model.excluded * a.diameter;
+    }
+    contact_terms(in, model.contact.scaled(0.5 * (a.diameter + b.diameter)), model.weights, false, out);
+    if (!out.active) continue;
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto &ga = out.gradient_a[k], &gb = out.gradient_b[k];
+      forces[first_a + k] -= {ga[0], ga[1], ga[2]};
+      forces[first_b + k] -= {gb[0], gb[1], gb[2]};
+    }
+    // the law is silent inside a core: say it
+    if (std::isinf(out.energy))
+      for (std::size_t k = 0; k < count; ++k) forces[first_a + k].x = forces[first_b + k].x = out.energy;
+  }
+  return forces;
+}
+
+}  // namespace
+
+YarnForces yarn_forces(const Fabric& fabric, const ModelOptions& options) {
+  const YarnModel model = build_yarn_model(fabric, options);
+  const YarnState state = build_yarn_state(fabric);
+  YarnForces result;
+  result.tension = tensions(fabric, model);
+  const std::vector<Vec3> forces = sample_forces(model, state);
+  result.samples = model.samples;
+  for (std::size_t k = 0; k < forces.size(); ++k) {
+    const double rest = model.yarn_of(static_cast<int>(k) / model.samples).rest_length;
+    result.contact.push_back(norm(forces[k]) * model.samples / rest);
+  }
+  return result;
+}
+
+}  // namespace loopwright

@@ -14,15 +14,6 @@ namespace {
 
 using std::numbers::pi;
 
-RelaxOptions alone(double tolerance) {
-  RelaxOptions options = frictionless();
-  options.model.free = {false, false, false};
-  options.grow_in = false;
-  options.plate_room = -1;
-  options.tolerance = tolerance;
-  return options;
-}
-
 // A straight yarn without ends, pressed to `share` of its length.
 constexpr int count = 60;
 constexpr double length = 60;
@@ -90,12 +81,12 @@ TEST(Modes, BuckledAndStraight) {
   FabricYarn bent = straight;
   for (std::size_t i = 2; i + 2 < bent.control_points.size(); ++i)
     bent.control_points[i].y = 2 * (1 + std::cos(pi * (static_cast<double>(i) - 26) / 24));
-  const std::vector<Mode> before = lowest_modes(fabric_of({straight}), alone(1e-9).model, {.wanted = 2});
+  const std::vector<Mode> before = lowest_modes(fabric_of({straight}), yarn_alone(1e-9).model, {.wanted = 2});
   EXPECT_LT(before[0].lambda, -1e-3);
   EXPECT_NEAR(before[1].lambda, before[0].lambda, 1e-6 * std::abs(before[0].lambda));
-  const RelaxResult buckled = relax(fabric_of({bent}), alone(1e-10));
+  const RelaxResult buckled = relax(fabric_of({bent}), yarn_alone(1e-10));
   ASSERT_TRUE(buckled.converged) << buckled.message;
-  const std::vector<Mode> after = lowest_modes(buckled.fabric, alone(1e-9).model, {.wanted = 2});
+  const std::vector<Mode> after = lowest_modes(buckled.fabric, yarn_alone(1e-9).model, {.wanted = 2});
   EXPECT_NEAR(after[0].lambda, 0, 1e-6 * std::abs(before[0].lambda));
   double out_of_plane = 0;
   for (const Vec3& u : after[0].shape) out_of_plane += u.x * u.x + u.y * u.y;

@@ -72,7 +72,17 @@ inline RelaxOptions frictionless() {
   return options;
 }
 
-// The same with friction and with forces in newtons.
+// No plates, no grow-in, fixed measures: a yarn alone in space.
+inline RelaxOptions yarn_alone(double tolerance) {
+  RelaxOptions options = frictionless();
+  options.model.free = {false, false, false};
+  options.grow_in = false;
+  options.plate_room = -1;
+  options.tolerance = tolerance;
+  return options;
+}
+
+// frictionless() with friction and with forces in newtons.
 inline RelaxOptions with_friction(double friction, double bend_stiffness_N_m2) {
   RelaxOptions options = frictionless();
   options.model.material.friction = friction;

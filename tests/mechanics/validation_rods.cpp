@@ -14,16 +14,6 @@ namespace {
 
 using std::numbers::pi;
 
-// No plates, no grow-in, fixed measures: a yarn alone in space.
-RelaxOptions alone(double tolerance) {
-  RelaxOptions options = frictionless();
-  options.model.free = {false, false, false};
-  options.grow_in = false;
-  options.plate_room = -1;
-  options.tolerance = tolerance;
-  return options;
-}
-
 // Adds force f at the yarn's parameter t (a knot or inside a segment) to the loads of its control points.
 void add_force(std::vector<Vec3>& loads, const FabricYarn& yarn, double t, const Vec3& f) {
   const int e = std::min(static_cast<int>(t), yarn.segments() - 1);
@@ -115,7 +105,7 @@ TEST(ValidationRods, CantileverWithAnEndLoad) {
   for (const double load : {0.1, 1.0, 5.0, 10.0}) {  // P L^2 / B
     const FabricYarn yarn = double_cantilever();
     const double P = load / (half_length * half_length);
-    RelaxOptions options = alone(1e-9);
+    RelaxOptions options = yarn_alone(1e-9);
     options.model.point_loads.resize(yarn.control_points.size());
     add_force(options.model.point_loads, yarn, 0, {0, P, 0});
     add_force(options.model.point_loads, yarn, 2 * half_segments, {0, P, 0});
@@ -138,7 +128,7 @@ TEST(ValidationRods, CantileverWithAnEndLoad) {
 TEST(ValidationRods, CantileverUnderItsWeight) {
   const FabricYarn yarn = double_cantilever();
   const double q = 0.1 / std::pow(half_length, 3);
-  RelaxOptions options = alone(1e-9);
+  RelaxOptions options = yarn_alone(1e-9);
   options.model.point_loads.resize(yarn.control_points.size());
   add_weight(options.model.point_loads, yarn, {0, -q, 0});
   add_force(options.model.point_loads, yarn, half_segments, {0, 2 * q * half_length, 0});
@@ -165,7 +155,7 @@ TEST(ValidationRods, OvalOpensToARing) {
   Fabric fabric = fabric_of({yarn});
   fabric.periodic = true;
   fabric.width = fabric.height = 100;
-  const RelaxResult result = relax(fabric, alone(1e-8));
+  const RelaxResult result = relax(fabric, yarn_alone(1e-8));
   ASSERT_TRUE(result.converged) << result.message << ", residual " << result.residual;
   Vec3 middle;
   for (const Vec3& p : result.fabric.yarns[0].control_points) middle += p / count;
@@ -239,7 +229,7 @@ TEST(ValidationRods, EulerLoadAndWhatABuckledYarnBears) {
     fabric.periodic = true;
     fabric.width = span;
     fabric.height = 100;
-    const RelaxResult result = relax(fabric, alone(1e-8));
+    const RelaxResult result = relax(fabric, yarn_alone(1e-8));
     ASSERT_TRUE(result.converged) << result.message << ", residual " << result.residual;
     double low = 0, high = 0.999;  // modulus
     const auto spread = [](double k) { return 2 * std::comp_ellint_2(k) / std::comp_ellint_1(k) - 1; };
@@ -268,7 +258,7 @@ TEST(ValidationRods, Catenary) {
       segments + 3, false);
   FabricYarn yarn = free_yarn(segments + 3, 1, [&](int i) { return parabola[static_cast<std::size_t>(i)]; });
   hold_ends(yarn, 3);
-  RelaxOptions options = alone(1e-6);
+  RelaxOptions options = yarn_alone(1e-6);
   options.model.material.stretch_stiffness = 1e5;
   options.model.point_loads.resize(yarn.control_points.size());
   add_weight(options.model.point_loads, yarn, {0, -0.01, 0});
@@ -295,7 +285,7 @@ TEST(ValidationRods, Catenary) {
 
 TEST(ValidationRods, LoadsThatMakeNoSenseAreRefused) {
   const FabricYarn yarn = double_cantilever();
-  RelaxOptions options = alone(1e-6);
+  RelaxOptions options = yarn_alone(1e-6);
   options.model.point_loads.resize(3);
   EXPECT_THROW(relax(fabric_of({yarn}), options), std::invalid_argument);
   options.model.point_loads.assign(yarn.control_points.size(), Vec3{});

@@ -22,9 +22,9 @@ class Cholesky {
   bool factor(const BlockMatrix& matrix, double shift);
   // x = M^-1 b for the matrix of the last successful factor().
   void solve(const Unknowns& b, Unknowns& x);
-  // Keeps of the factor only what solve() needs, in single precision: a tenth of the memory, and half of what
-  // a solution must read. Good for a preconditioner; solve() is then right to about six digits. The next
-  // factor() works anew. Without CHOLMOD nothing changes.
+  // Keeps of the factor only what solve() needs, in single precision: half of what it holds and of what a
+  // solution must read, and nothing of what only factoring needs. Good for a preconditioner; solve() is then
+  // right to about six digits. The next factor() works anew. Without CHOLMOD nothing changes.
   void compact();
   // Entries of the factor, for reports.
   double factor_entries() const;

@@ -112,6 +112,11 @@ WindowSize parsed_window(std::string_view text) {
 Knitting knit(const std::filesystem::path& file, const PieceRequest& request, Diagnostics& diagnostics) {
   FabricOptions options;
   if (request.periodic) options.edges = Edges::periodic;
+  return knit_with(file, options, diagnostics);
+}
+
+Knitting knit_with(const std::filesystem::path& file, const FabricOptions& options,
+                   Diagnostics& diagnostics) {
   Knitting knitting;
   knitting.program = read_program(file, diagnostics, options);
   knitting.record = run_machine(knitting.program, diagnostics);

@@ -20,6 +20,7 @@
 #include "machine/knitting_record.hpp"
 #include "mechanics/relax.hpp"
 #include "notation/program.hpp"
+#include "notation/vermiculation.hpp"
 #include "outputs/exchange/curves_to_fabric.hpp"
 #include "outputs/state.hpp"
 #include "outputs/write_json.hpp"
@@ -54,6 +55,8 @@ struct Knitting {
   YarnGraph graph;
 };
 Knitting knit(const std::filesystem::path& file, const PieceRequest& request, Diagnostics& diagnostics);
+// The same with a size or edges of its own instead of the file's.
+Knitting knit_with(const std::filesystem::path& file, const FabricOptions& options, Diagnostics& diagnostics);
 
 // geometry: the yarns in space before mechanics. Throws std::invalid_argument where the piece has no such
 // part.

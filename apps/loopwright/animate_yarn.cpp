@@ -13,13 +13,10 @@
 #include "dynamics/yarn_motion.hpp"
 #include "files.hpp"
 #include "interrupt.hpp"
-#include "machine/run_machine.hpp"
-#include "notation/read_program.hpp"
 #include "outputs/exchange/write_vtp.hpp"
 #include "outputs/image.hpp"
 #include "outputs/write_vtk.hpp"
 #include "progress_bar.hpp"
-#include "topology/build_yarn_graph.hpp"
 
 namespace loopwright {
 namespace {
@@ -111,10 +108,7 @@ std::optional<Piece> piece_of_size(const std::string& file, const std::string& s
   options.size_wales = wanted.wales;
   options.size_courses = wanted.courses;
   Diagnostics diagnostics(file);
-  Knitting knitting;
-  knitting.program = read_program(file, diagnostics, options);
-  knitting.record = run_machine(knitting.program, diagnostics);
-  knitting.graph = build_yarn_graph(knitting.program, knitting.record, diagnostics);
+  const Knitting knitting = knit_with(file, options, diagnostics);
   std::cerr << diagnostics;
   if (!diagnostics.ok()) return std::nullopt;
   Fabric fabric = first_geometry(knitting, request);

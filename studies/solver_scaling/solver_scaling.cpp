@@ -9,10 +9,7 @@
 #include <filesystem>
 #include <string>
 
-#include "machine/run_machine.hpp"
-#include "notation/read_program.hpp"
 #include "pipeline.hpp"
-#include "topology/build_yarn_graph.hpp"
 
 namespace {
 
@@ -26,17 +23,6 @@ double peak_MB() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<double>(usage.ru_maxrss) / 1024;
-}
-
-Knitting knit_size(const std::string& file, int n, Diagnostics& diagnostics) {
-  FabricOptions options;
-  options.size_wales = options.size_courses = n;
-  options.edges = Edges::held;
-  Knitting knitting;
-  knitting.program = read_program(file, diagnostics, options);
-  knitting.record = run_machine(knitting.program, diagnostics);
-  knitting.graph = build_yarn_graph(knitting.program, knitting.record, diagnostics);
-  return knitting;
 }
 
 void print_row(const char* what, std::size_t loops, const RelaxResult& r, double seconds) {
@@ -62,7 +48,10 @@ RelaxResult timed(const char* what, std::size_t loops, const Fabric& fabric, Rel
 
 int run(const std::string& file, int n) {
   Diagnostics diagnostics(file);
-  const Knitting knitting = knit_size(file, n, diagnostics);
+  FabricOptions size;
+  size.size_wales = size.size_courses = n;
+  size.edges = Edges::held;
+  const Knitting knitting = knit_with(file, size, diagnostics);
   if (!diagnostics.ok()) return 1;
   const PieceRequest request{.start_from_cell = true};
   Fabric fabric = first_geometry(knitting, request);

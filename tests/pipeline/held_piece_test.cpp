@@ -4,13 +4,10 @@
 
 #include <filesystem>
 
-#include "machine/run_machine.hpp"
 #include "mechanics/linear/conjugate_gradient.hpp"
 #include "mechanics/linear/schwarz.hpp"
 #include "mechanics/newton.hpp"
-#include "notation/read_program.hpp"
 #include "pipeline.hpp"
-#include "topology/build_yarn_graph.hpp"
 
 namespace loopwright {
 namespace {
@@ -27,10 +24,7 @@ Start start_of(const std::string& structure, int n) {
   FabricOptions size;
   size.size_wales = size.size_courses = n;
   size.edges = Edges::held;
-  Knitting knitting;
-  knitting.program = read_program(file, diagnostics, size);
-  knitting.record = run_machine(knitting.program, diagnostics);
-  knitting.graph = build_yarn_graph(knitting.program, knitting.record, diagnostics);
+  const Knitting knitting = knit_with(file, size, diagnostics);
   EXPECT_TRUE(diagnostics.ok());
   const PieceRequest request{.start_from_cell = true};
   Start start{first_geometry(knitting, request), {}};

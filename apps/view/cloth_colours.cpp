@@ -159,14 +159,15 @@ ClothColours cloth_colours(const Fabric& fabric, const ModelOptions& options, Co
     case ColourBy::tension: {
       const YarnForces forces = yarn_forces(fabric, options);
       colours.title = bend > 0 ? "Tension, cN" : "Tension, B/d\u00b2";
-      colour_by_value(fabric, by_yarn(fabric, forces.tension, 1), bend > 0 ? bend / (d * d) * 100 : 1, colours);
+      colour_by_value(fabric, by_yarn(fabric, forces.tension, 1), bend > 0 ? bend / (d * d) * 100 : 1,
+                      colours);
       break;
     }
     case ColourBy::contact: {
       const YarnForces forces = yarn_forces(fabric, options);
       colours.title = bend > 0 ? "Contact force, N/m" : "Contact force, B/d\u00b3";
-      colour_by_value(fabric, by_yarn(fabric, forces.contact, forces.samples), bend > 0 ? bend / (d * d * d) : 1,
-                      colours);
+      colour_by_value(fabric, by_yarn(fabric, forces.contact, forces.samples),
+                      bend > 0 ? bend / (d * d * d) : 1, colours);
       break;
     }
     case ColourBy::curvature: {

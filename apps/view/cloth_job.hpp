@@ -39,10 +39,10 @@ struct ClothMoment {
   ClothStage stage = ClothStage::reading;
   std::shared_ptr<const Diagnostics> diagnostics;  // of notation, machine and topology
   std::shared_ptr<const Knitting> knitting;
-  std::shared_ptr<const Fabric> fabric;        // none: nothing new to show
-  std::shared_ptr<const RelaxOptions> options; // without callbacks
-  std::shared_ptr<const RelaxResult> relaxed;  // at the end alone
-  InterlacingCheck interlacings;               // expected < 0: not counted for this moment
+  std::shared_ptr<const Fabric> fabric;         // none: nothing new to show
+  std::shared_ptr<const RelaxOptions> options;  // without callbacks
+  std::shared_ptr<const RelaxResult> relaxed;   // at the end alone
+  InterlacingCheck interlacings;                // expected < 0: not counted for this moment
   int iterations = 0;
   double residual = 0, radius = 0, seconds = 0;
   std::string message;

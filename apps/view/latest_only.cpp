@@ -4,7 +4,8 @@
 
 namespace loopwright {
 
-LatestOnly::LatestOnly() : cancelled_(std::make_shared<std::atomic<bool>>(false)), thread_([this] { run(); }) {}
+LatestOnly::LatestOnly()
+    : cancelled_(std::make_shared<std::atomic<bool>>(false)), thread_([this] { run(); }) {}
 
 LatestOnly::~LatestOnly() {
   {

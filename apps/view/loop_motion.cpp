@@ -87,10 +87,10 @@ std::optional<std::size_t> LoopMotion::mass_at(const Vec3& from, const Vec3& dir
   return best;
 }
 
-LoopId LoopMotion::loop_of(std::size_t mass) const {
+SourceLocation LoopMotion::letter_at(std::size_t mass) const {
   const BindingPoint& point = model_.points.points[mass];
-  if (!point.lower_of.empty()) return point.lower_of.front();
-  return point.upper_of.empty() ? LoopId() : point.upper_of.front();
+  const std::vector<LoopId>& loops = point.lower_of.empty() ? point.upper_of : point.lower_of;
+  return loops.empty() ? SourceLocation() : graph_.loop(loops.front()).at;
 }
 
 void LoopMotion::grab(std::size_t mass) {

@@ -23,9 +23,9 @@ class LoopMotion {
 
   // The mass nearest to a line of sight within `reach` (d), the foremost of several.
   std::optional<std::size_t> mass_at(const Vec3& from, const Vec3& direction, double reach) const;
-  // A loop that is drawn through the mass's binding point, or held by it.
-  LoopId loop_of(std::size_t mass) const;
-  void grab(std::size_t mass);     // it stays where it is put
+  // The letter of a loop that is drawn through the mass's binding point, or held by it.
+  SourceLocation letter_at(std::size_t mass) const;
+  void grab(std::size_t mass);      // it stays where it is put
   void grab_edge(PiecePlace edge);  // all masses of an edge go together
   void move_grabbed(const Vec3& by);
   void let_go();

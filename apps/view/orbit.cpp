@@ -23,7 +23,8 @@ double round_length(double most) {
 
 MouseAct mouse_act(MouseHabit habit, const MouseButtons& b) {
   if (b.middle) {
-    if (habit == MouseHabit::blender) return b.shift ? MouseAct::pan : b.control ? MouseAct::zoom : MouseAct::turn;
+    if (habit == MouseHabit::blender)
+      return b.shift ? MouseAct::pan : b.control ? MouseAct::zoom : MouseAct::turn;
     return b.left || b.shift ? MouseAct::turn : b.control ? MouseAct::zoom : MouseAct::pan;
   }
   if (b.right) return b.shift ? MouseAct::pan : MouseAct::turn;
@@ -86,11 +87,11 @@ FloorGrid floor_grid(const Bounds& bounds, double diameter_mm, std::array<std::u
   const auto [x0, x1] = lines(centre.x, wide / 2);
   const auto [z0, z1] = lines(centre.z, std::max(wide / 4, size.z));
   for (int i = x0; i <= x1; ++i)
-    grid.scene.add_line(std::array{Vec3{i * square, y, z0 * square}, Vec3{i * square, y, z1 * square}}, colour, 0,
-                        i % 10 == 0 ? 1.4 : 0.8);
+    grid.scene.add_line(std::array{Vec3{i * square, y, z0 * square}, Vec3{i * square, y, z1 * square}},
+                        colour, 0, i % 10 == 0 ? 1.4 : 0.8);
   for (int k = z0; k <= z1; ++k)
-    grid.scene.add_line(std::array{Vec3{x0 * square, y, k * square}, Vec3{x1 * square, y, k * square}}, colour, 0,
-                        k % 10 == 0 ? 1.4 : 0.8);
+    grid.scene.add_line(std::array{Vec3{x0 * square, y, k * square}, Vec3{x1 * square, y, k * square}},
+                        colour, 0, k % 10 == 0 ? 1.4 : 0.8);
   return grid;
 }
 

@@ -48,8 +48,8 @@ std::optional<PickedYarn> yarn_at(const Fabric& fabric, std::array<int, 2> repea
           const double depth = along - std::sqrt(radius * radius - aside);
           if (depth >= foremost) continue;
           foremost = depth;
-          best = PickedYarn{static_cast<int>(y), static_cast<double>(k) / per_segment, {m, n}, -1,
-                            points[k] + shift};
+          best = PickedYarn{
+              static_cast<int>(y), static_cast<double>(k) / per_segment, {m, n}, -1, points[k] + shift};
         }
       }
   }

@@ -11,7 +11,9 @@
 namespace loopwright {
 namespace {
 
-bool pulls_courses(StretchDirection d) { return d == StretchDirection::course || d == StretchDirection::both; }
+bool pulls_courses(StretchDirection d) {
+  return d == StretchDirection::course || d == StretchDirection::both;
+}
 bool pulls_wales(StretchDirection d) { return d == StretchDirection::wale || d == StretchDirection::both; }
 
 }  // namespace
@@ -56,9 +58,8 @@ StretchPoint StretchSession::go_to(double strain, const std::function<bool(const
   for (int k = 1; k <= steps; ++k) {
     const double to = from + (strain - from) * k / steps;
     const Fabric& now = at_.fabric;
-    const Fabric moved =
-        deformed(now, pulls_courses(direction_) ? rest_.width * (1 + to) : now.width,
-                 pulls_wales(direction_) ? rest_.height * (1 + to) : now.height, now.skew);
+    const Fabric moved = deformed(now, pulls_courses(direction_) ? rest_.width * (1 + to) : now.width,
+                                  pulls_wales(direction_) ? rest_.height * (1 + to) : now.height, now.skew);
     options_.history = at_.history;
     at_ = relax(moved, options_);
     strain_ = to;

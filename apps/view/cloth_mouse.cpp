@@ -105,7 +105,7 @@ void ClothView::pull(const QPointF& at) {
   drag_.held += by;
   motion_->move_grabbed(by);
   if (playing_) frame_timer_.start();
-  update();
+  redraw();
 }
 
 void ClothView::end_pull() {
@@ -147,9 +147,7 @@ void ClothView::mouseMoveEvent(QMouseEvent* event) {
       return;
   }
   drag_.last = at;
-  moving_ = true;
-  still_timer_.start();
-  update();
+  if (!drag_.pulls) moved_by_hand();
 }
 
 void ClothView::mouseReleaseEvent(QMouseEvent* event) {
@@ -164,9 +162,7 @@ void ClothView::wheelEvent(QWheelEvent* event) {
   const QPointF at = event->position();
   camera_ = zoomed_by_mouse(camera_, event->angleDelta().y() / 120.0, aspect(), 2 * at.x() / width() - 1,
                             1 - 2 * at.y() / height());
-  moving_ = true;
-  still_timer_.start();
-  update();
+  moved_by_hand();
 }
 
 void ClothView::keyPressEvent(QKeyEvent* event) {
@@ -198,9 +194,7 @@ void ClothView::keyPressEvent(QKeyEvent* event) {
       QOpenGLWidget::keyPressEvent(event);
       return;
   }
-  moving_ = true;
-  still_timer_.start();
-  update();
+  moved_by_hand();
 }
 
 }  // namespace loopwright

@@ -4,6 +4,7 @@
 #include <QMetaObject>
 #include <QOpenGLContext>
 #include <QOpenGLFramebufferObject>
+#include <QOpenGLFunctions>
 #include <QPainter>
 #include <algorithm>
 #include <cmath>
@@ -47,7 +48,7 @@ ClothView::ClothView(Session& session, QWidget* parent) : QOpenGLWidget(parent),
   connect(&still_timer_, &QTimer::timeout, this, [this] {
     moving_ = false;
     if (wanted_detail() != detail_) ask_for_scene();
-    update();
+    redraw();
   });
   frame_timer_.setInterval(frame_ms);
   connect(&frame_timer_, &QTimer::timeout, this, &ClothView::tick);
@@ -57,6 +58,7 @@ ClothView::~ClothView() {
   scene_builder_.cancel();
   motion_builder_.cancel();
   makeCurrent();
+  buffer_.reset();
   yarns_.reset();
   lines_.reset();
   doneCurrent();
@@ -86,8 +88,8 @@ void ClothView::take_fabric() {
     scene_ = nullptr;
     motion_ = nullptr;
     motion_of_ = nullptr;
-    camera_is_set_ = false;
-    update();
+    follows_ = true;
+    redraw();
     return;
   }
   ask_for_scene();
@@ -102,7 +104,7 @@ double ClothView::wanted_detail() const {
 void ClothView::ask_for_scene() {
   const std::shared_ptr<const Fabric> fabric = session_.fabric();
   if (!fabric || style_ != ClothStyle::yarn) {
-    update();
+    redraw();
     return;
   }
   const bool at_work = session_.working();
@@ -123,8 +125,8 @@ void ClothView::ask_for_scene() {
   const ColourBy by = !forces_known && (colour_by_ == ColourBy::tension || colour_by_ == ColourBy::contact)
                           ? ColourBy::yarn
                           : colour_by_;
-  scene_waits_ = true;
-  scene_builder_.start([this, fabric, options, spans, kin, model, by, at_work,
+  const int serial = ++scenes_asked_;
+  scene_builder_.start([this, serial, fabric, options, spans, kin, model, by, at_work,
                         repeats = repeats_](const std::atomic<bool>& cancelled) mutable {
     std::shared_ptr<const YarnScene> scene;
     ClothColours colours;
@@ -137,7 +139,8 @@ void ClothView::ask_for_scene() {
     }
     QMetaObject::invokeMethod(
         this,
-        [this, fabric, scene, repeats, at_work, colours = std::move(colours)]() mutable {
+        [this, serial, fabric, scene, repeats, at_work, colours = std::move(colours)]() mutable {
+          scenes_taken_ = serial;
           drawn_ = fabric;
           take_scene(scene, std::move(colours), repeats, at_work);
         },
@@ -147,21 +150,16 @@ void ClothView::ask_for_scene() {
 
 void ClothView::take_scene(std::shared_ptr<const YarnScene> scene, ClothColours colours,
                            std::array<int, 2> repeats, bool coarse) {
-  scene_waits_ = false;
   if (!scene) return;
   scene_ = std::move(scene);
   colours_ = std::move(colours);
   repeats_ = repeats;
   coarse_ = coarse;
   uploaded_ = false;
-  if (!camera_is_set_) {
-    camera_is_set_ = true;
-    fit();
-    if (wanted_detail() != detail_) ask_for_scene();
-  } else if (coarse_ && !session_.working()) {
-    ask_for_scene();  // the work ended meanwhile
-  }
-  update();
+  follow();
+  // the work ended meanwhile, or the camera is nearer now
+  if ((coarse_ && !session_.working()) || (!coarse_ && wanted_detail() != detail_)) ask_for_scene();
+  redraw();
 }
 
 // The loop model of the knitting that is shown, built aside.
@@ -191,7 +189,7 @@ void ClothView::ask_for_motion() {
           if (motion_ && style_ != ClothStyle::yarn) fit();
           if (playing_) frame_timer_.start();
           emit motion_changed();
-          update();
+          redraw();
         },
         Qt::QueuedConnection);
   });
@@ -210,7 +208,7 @@ void ClothView::set_style(ClothStyle style) {
     if (playing_) frame_timer_.start();
   }
   emit view_changed();
-  update();
+  redraw();
 }
 
 void ClothView::set_colour_by(ColourBy by) {
@@ -231,23 +229,35 @@ void ClothView::set_view(View view) {
 void ClothView::set_perspective(bool perspective) {
   camera_ = with_projection(camera_, perspective);
   emit view_changed();
-  update();
+  redraw();
 }
 
 void ClothView::set_floor(bool shown) {
   floor_ = shown;
-  update();
+  redraw();
 }
 
 void ClothView::set_dark(bool dark) {
   dark_ = dark;
-  update();
+  redraw();
 }
 
 void ClothView::fit() {
-  camera_ = fitted(camera_, bounds(), aspect());
+  follows_ = true;
+  follow();
   if (style_ == ClothStyle::yarn && wanted_detail() != detail_ && scene_) ask_for_scene();
-  update();
+  redraw();
+}
+
+void ClothView::follow() {
+  if (follows_) camera_ = fitted(camera_, bounds(), aspect());
+}
+
+void ClothView::moved_by_hand() {
+  follows_ = false;
+  moving_ = true;
+  still_timer_.start();
+  redraw();
 }
 
 // --- the loop model in motion
@@ -264,7 +274,7 @@ void ClothView::tick() {
   while (moves && clock.elapsed() < frame_ms / 2) moves = motion_->advance(10);
   if (!moves && !motion_->grabbed()) frame_timer_.stop();
   emit motion_changed();
-  update();
+  redraw();
 }
 
 void ClothView::set_playing(bool playing) {
@@ -280,14 +290,14 @@ void ClothView::step() {
   set_playing(false);
   if (motion_) motion_->advance(10);
   emit motion_changed();
-  update();
+  redraw();
 }
 
 void ClothView::reset_motion() {
   if (motion_) motion_->reset();
   if (playing_ && style_ != ClothStyle::yarn) frame_timer_.start();
   emit motion_changed();
-  update();
+  redraw();
 }
 
 // --- drawing
@@ -298,12 +308,21 @@ void ClothView::initializeGL() {
     yarns_ = std::make_unique<YarnRenderer>();
     lines_ = std::make_unique<StructurePainter>();
     uploaded_ = false;
+    buffer_.reset();
   } catch (const std::runtime_error& fault) {
     no_gl_ = QString::fromUtf8(fault.what());
   }
 }
 
-void ClothView::resizeGL(int, int) {}
+void ClothView::resizeGL(int, int) {
+  follow();
+  buffer_is_current_ = false;
+}
+
+void ClothView::redraw() {
+  buffer_is_current_ = false;
+  update();
+}
 
 void ClothView::draw_scene(int width, int height, double line_pixels) {
   if (style_ == ClothStyle::yarn) {
@@ -335,16 +354,48 @@ void ClothView::draw_scene(int width, int height, double line_pixels) {
   }
 }
 
-void ClothView::paintGL() {
+void ClothView::draw_into_buffer(QSize pixels) {
+  // a picture that takes longer than this moves in jerks
+  constexpr double smooth_ms = 50;
+  const bool half = moving_ && moving_frame_ms_ > smooth_ms;
+  const QSize size = half ? QSize(std::max(1, pixels.width() / 2), std::max(1, pixels.height() / 2)) : pixels;
+  const int samples = moving_ || coarse_ ? 0 : 4;
+  if (!buffer_ || buffer_->size() != size || buffer_->format().samples() != samples) {
+    QOpenGLFramebufferObjectFormat format;
+    format.setAttachment(QOpenGLFramebufferObject::CombinedDepthStencil);
+    format.setSamples(samples);
+    buffer_ = std::make_unique<QOpenGLFramebufferObject>(size, format);
+  }
+  buffer_->bind();
   QElapsedTimer clock;
   clock.start();
+  draw_scene(size.width(), size.height(), std::max(1.0, size.height() / 700.0));
+  QOpenGLFramebufferObject::bindDefault();
+  // the buffer's last pixel is waited for by the blit below, so the time is taken there
+  QOpenGLFramebufferObject::blitFramebuffer(nullptr, QRect(QPoint(), pixels), buffer_.get(),
+                                            QRect(QPoint(), size), GL_COLOR_BUFFER_BIT,
+                                            half ? GL_LINEAR : GL_NEAREST);
+  context()->functions()->glFinish();
+  last_frame_ms_ = static_cast<double>(clock.nsecsElapsed()) * 1e-6;
+  // of the full size, so that a half-size frame does not talk itself back to the full one
+  if (moving_) moving_frame_ms_ = half ? 3 * last_frame_ms_ : last_frame_ms_;
+  buffer_is_current_ = true;
+  ++frames_drawn_;
+}
+
+void ClothView::paintGL() {
   const QSize pixels = size() * devicePixelRatioF();
-  if (no_gl_.isEmpty()) draw_scene(pixels.width(), pixels.height(), std::max(1.0, pixels.height() / 700.0));
+  if (no_gl_.isEmpty()) {
+    if (buffer_ && buffer_is_current_)
+      QOpenGLFramebufferObject::blitFramebuffer(nullptr, QRect(QPoint(), pixels), buffer_.get(),
+                                                QRect(QPoint(), buffer_->size()), GL_COLOR_BUFFER_BIT,
+                                                buffer_->size() == pixels ? GL_NEAREST : GL_LINEAR);
+    else
+      draw_into_buffer(pixels);
+  }
   QPainter painter(this);
   painter.setRenderHint(QPainter::Antialiasing);
   paint_notes(painter, size());
-  painter.end();
-  last_frame_ms_ = static_cast<double>(clock.nsecsElapsed()) * 1e-6;
 }
 
 QImage ClothView::picture(QSize size) {

@@ -5,6 +5,8 @@
 #include <QTimer>
 #include <memory>
 
+class QOpenGLFramebufferObject;
+
 #include "loop_motion.hpp"
 #include "orbit.hpp"
 #include "outputs/yarn_renderer.hpp"
@@ -34,8 +36,9 @@ class ClothView : public QOpenGLWidget {
   const Camera& camera() const { return camera_; }
   // Where a place of the fabric is drawn, in the widget; for tests as well.
   QPointF on_screen(const Vec3& place) const;
-  bool scene_is_current() const { return !scene_builder_.busy() && !scene_waits_; }
+  bool scene_is_current() const { return scenes_taken_ == scenes_asked_; }
   double last_frame_ms() const { return last_frame_ms_; }
+  int frames_drawn() const { return frames_drawn_; }
   // The picture as it is, at a size of one's own.
   QImage picture(QSize size);
 
@@ -71,6 +74,8 @@ class ClothView : public QOpenGLWidget {
     double edge_side = 1;  // +1: right or top edge
     Vec3 held;             // place that is pulled
   };
+  void follow();
+  void moved_by_hand();
   void take_fabric();
   void ask_for_scene();
   void take_scene(std::shared_ptr<const YarnScene> scene, ClothColours colours, std::array<int, 2> repeats,
@@ -78,6 +83,8 @@ class ClothView : public QOpenGLWidget {
   void ask_for_motion();
   void tick();
   void draw_scene(int width, int height, double line_pixels);
+  void draw_into_buffer(QSize pixels);
+  void redraw();  // the picture is out of date, not only what is written over it
   void paint_notes(QPainter& painter, QSize size);
   void paint_legend(QPainter& painter, QSize size);
   void choose_at(const QPointF& at);
@@ -94,15 +101,22 @@ class ClothView : public QOpenGLWidget {
   ClothStyle style_ = ClothStyle::yarn;
   ColourBy colour_by_ = ColourBy::yarn;
   MouseHabit habit_ = MouseHabit::freecad;
-  bool floor_ = true, dark_ = false, playing_ = true, camera_is_set_ = false, moving_ = false;
+  bool floor_ = true, dark_ = false, playing_ = true, moving_ = false;
+  bool follows_ = true;  // the camera fits the cloth until somebody moves it
   Camera camera_;
   Drag drag_;
   QTimer still_timer_, frame_timer_;
 
+  // The picture without notes: drawn anew only when something in space changed, at half size while it moves
+  // where that is too slow.
+  std::unique_ptr<QOpenGLFramebufferObject> buffer_;
+  bool buffer_is_current_ = false;
+  double moving_frame_ms_ = 0;
   std::unique_ptr<YarnRenderer> yarns_;
   std::unique_ptr<StructurePainter> lines_;
   std::shared_ptr<const YarnScene> scene_;
-  bool uploaded_ = false, scene_waits_ = false, coarse_ = false;
+  bool uploaded_ = false, coarse_ = false;
+  int scenes_asked_ = 0, scenes_taken_ = 0;
   ClothColours colours_;
   std::array<int, 2> repeats_{1, 1};
   double detail_ = 0;
@@ -110,6 +124,7 @@ class ClothView : public QOpenGLWidget {
   std::shared_ptr<LoopMotion> motion_;
   std::shared_ptr<const Knitting> motion_of_;
   double last_frame_ms_ = 0;
+  int frames_drawn_ = 0;
   QString no_gl_;
   LatestOnly scene_builder_, motion_builder_;
 };

@@ -7,6 +7,7 @@
 #include <QToolTip>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace loopwright {
 namespace {
@@ -71,7 +72,7 @@ DiagramView::DiagramView(Session& session, QWidget* parent) : QAbstractScrollAre
 
 void DiagramView::lay_out() {
   const NeedleDiagram& diagram = session_.diagram();
-  rows_.assign(diagram.passes.size(), {});
+  const std::vector<Row> before = std::exchange(rows_, std::vector<Row>(diagram.passes.size()));
   least_slot_ = diagram.first_needle;
   double most_slot = diagram.first_needle + diagram.wales;
   for (const DiagramPass& pass : diagram.passes)
@@ -86,10 +87,39 @@ void DiagramView::lay_out() {
   for (std::size_t p = 0; p < rows_.size(); ++p) {
     rows_[p].front = height_ - 0.8 - line_height * static_cast<double>(p);
     rows_[p].rear = rows_[p].front - bed_distance;
+    const DiagramPass& pass = diagram.passes[p];
+    if (pass.line && !pass.implied) rows_[p].line = static_cast<int>(*pass.line), rows_[p].pass = pass.pass;
   }
-  if (cursor_ && cursor_->pass >= rows_.size()) cursor_.reset();
-  if (anchor_ && anchor_->pass >= rows_.size()) anchor_.reset();
+  keep_in_place(cursor_, before);
+  keep_in_place(anchor_, before);
   bars();
+}
+
+// A change may put transfers before a pass or take them away: the cursor stays with what is written.
+void DiagramView::keep_in_place(std::optional<Place>& place, const std::vector<Row>& before) const {
+  if (!place) return;
+  if (place->pass < before.size() && before[place->pass].line >= 0) {
+    const Row& was = before[place->pass];
+    for (std::size_t p = 0; p < rows_.size(); ++p)
+      if (rows_[p].line == was.line && rows_[p].pass == was.pass) {
+        place->pass = p;
+        return;
+      }
+  }
+  if (place->pass >= rows_.size()) place.reset();
+}
+
+std::optional<std::size_t> DiagramView::line_at_cursor() {
+  if (!cursor_) {
+    emit session_.refused(tr("Choose a needle of the diagram first."));
+    return std::nullopt;
+  }
+  const int line = rows_[cursor_->pass].line;
+  if (line < 0) {
+    emit session_.refused(tr("These transfers follow from the letters: choose a course that is written."));
+    return std::nullopt;
+  }
+  return static_cast<std::size_t>(line);
 }
 
 void DiagramView::bars() {
@@ -243,7 +273,7 @@ void DiagramView::paste_copied() {
 }
 
 void DiagramView::repeat_selected() {
-  if (!cursor_) return;
+  if (!line_at_cursor()) return;
   if (!anchor_) anchor_ = cursor_;
   if (const auto what = area())
     session_.edit_notation(tr("Repeat courses"), [&](Vermiculation& notation) {
@@ -252,8 +282,7 @@ void DiagramView::repeat_selected() {
 }
 
 void DiagramView::insert_course() {
-  if (!cursor_) return;
-  const auto line = session_.diagram().passes[cursor_->pass].line;
+  const auto line = line_at_cursor();
   if (!line) return;
   session_.edit_notation(tr("Insert course"), [&](Vermiculation& notation) {
     return insert_line(notation, *line + 1, notation.lines[*line]);
@@ -261,7 +290,7 @@ void DiagramView::insert_course() {
 }
 
 void DiagramView::remove_courses() {
-  if (!cursor_) return;
+  if (!line_at_cursor()) return;
   const bool single = !anchor_;
   if (single) anchor_ = cursor_;
   const auto what = area();
@@ -285,7 +314,10 @@ void DiagramView::remove_wale_here() {
 }
 
 void DiagramView::keyPressEvent(QKeyEvent* event) {
-  if (!session_.diagram().passes.empty() && !cursor_) cursor_ = Place{};
+  if (!rows_.empty() && !cursor_) {
+    cursor_ = Place{};
+    while (cursor_->pass + 1 < rows_.size() && rows_[cursor_->pass].line < 0) ++cursor_->pass;
+  }
   if (!cursor_) return;
   const auto moved = [&](int passes, int wales) {
     if (event->modifiers() & Qt::ShiftModifier) {

@@ -50,6 +50,8 @@ class DiagramView : public QAbstractScrollArea {
  private:
   struct Row {
     double front = 0, rear = 0;  // heights of the rows of dots, in pitches from the top
+    int line = -1;               // of the notation; -1: follows from it
+    std::size_t pass = 0;        // of that line
   };
   struct Place {
     std::size_t pass = 0;
@@ -58,6 +60,8 @@ class DiagramView : public QAbstractScrollArea {
     friend bool operator==(const Place&, const Place&) = default;
   };
   void lay_out();
+  void keep_in_place(std::optional<Place>& place, const std::vector<Row>& before) const;
+  std::optional<std::size_t> line_at_cursor();  // says why there is none
   void bars();
   std::optional<Place> place_at(const QPointF& at) const;
   const DiagramNeedle& needle(const Place& place) const;

@@ -16,7 +16,6 @@ int main(int argc, char** argv) {
   format.setVersion(3, 3);
   format.setProfile(QSurfaceFormat::CoreProfile);
   format.setDepthBufferSize(24);
-  format.setSamples(4);
   QSurfaceFormat::setDefaultFormat(format);
   QApplication app(argc, argv);
   app.setApplicationDisplayName(QStringLiteral("Loopwright"));

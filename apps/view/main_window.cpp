@@ -118,12 +118,13 @@ void MainWindow::build_docks() {
       add_dock(tr("Measurements"), "dock measures", measures, Qt::RightDockWidgetArea);
   add_dock(tr("Stretch"), "dock stretch", stretch_, Qt::RightDockWidgetArea);
   fabric_dock->raise();
-  add_dock(tr("Messages"), "dock messages", messages, Qt::BottomDockWidgetArea);
+  QDockWidget* messages_dock = add_dock(tr("Messages"), "dock messages", messages, Qt::BottomDockWidgetArea);
   // the sides keep the corners
   setCorner(Qt::BottomLeftCorner, Qt::LeftDockWidgetArea);
   setCorner(Qt::BottomRightCorner, Qt::RightDockWidgetArea);
   resizeDocks({text, fabric_dock}, {340, 300}, Qt::Horizontal);
   resizeDocks({text, diagram}, {300, 420}, Qt::Vertical);
+  resizeDocks({messages_dock}, {100}, Qt::Vertical);
   resizeDocks({fabric_dock, measure_dock}, {330, 200}, Qt::Vertical);
   connect(messages, &MessagesPanel::go_to, this, [this](SourceLocation at) {
     editor_->setFocus();
@@ -159,6 +160,7 @@ void MainWindow::build_status() {
 QString MainWindow::interlacings_text() const {
   const ClothMoment& moment = session_.moment();
   if (!session_.fabric()) return tr("no cloth");
+  if (!session_.fabric_is_current()) return tr("last cloth");
   if (moment.interlacings.expected < 0) return tr("interlacings not counted yet");
   return tr("interlacings %1 of %2").arg(moment.interlacings.intact).arg(moment.interlacings.expected);
 }

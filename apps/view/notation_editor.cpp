@@ -198,6 +198,8 @@ void NotationEditor::mark() {
       mark.cursor.select(QTextCursor::LineUnderCursor);
     mark.format.setUnderlineStyle(QTextCharFormat::WaveUnderline);
     mark.format.setUnderlineColor(severity_colour(message.severity));
+    if (message.severity == Severity::error)
+      mark.format.setBackground(dark_ ? QColor(110, 30, 30) : QColor(255, 220, 215));
     marks.append(mark);
   }
   const Selection& chosen = session_.selection();

@@ -192,7 +192,7 @@ void Session::stretch_to(StretchDirection direction, double strain) {
   try {
     if (!stretch_ || stretch_->direction() != direction) {
       stretch_ = std::make_shared<StretchSession>(*moment_.relaxed, *moment_.options, direction);
-      stretch_points_.clear();
+      stretch_points_ = {stretch_->point()};
     }
   } catch (const std::invalid_argument& fault) {
     emit refused(QString::fromUtf8(fault.what()));

@@ -18,6 +18,7 @@ class StretchSession {
   // reached. `on_point` after each step; false stops.
   StretchPoint go_to(double strain, const std::function<bool(const StretchPoint&)>& on_point = {});
 
+  StretchPoint point() const;  // where it is
   double strain() const { return strain_; }
   const RelaxResult& reached() const { return at_; }
   StretchDirection direction() const { return direction_; }
@@ -25,8 +26,6 @@ class StretchSession {
   static constexpr double largest_step = 0.02;
 
  private:
-  StretchPoint point() const;
-
   RelaxOptions options_;
   StretchDirection direction_;
   Fabric rest_;

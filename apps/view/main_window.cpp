@@ -118,6 +118,10 @@ void MainWindow::build_docks() {
       add_dock(tr("Measurements"), "dock measures", measures, Qt::RightDockWidgetArea);
   add_dock(tr("Stretch"), "dock stretch", stretch_, Qt::RightDockWidgetArea);
   fabric_dock->raise();
+  // what is clicked is told at once
+  connect(&session_, &Session::selection_changed, loop_dock, [this, loop_dock] {
+    if (session_.selection().at.line > 0) loop_dock->raise();
+  });
   QDockWidget* messages_dock = add_dock(tr("Messages"), "dock messages", messages, Qt::BottomDockWidgetArea);
   // the sides keep the corners
   setCorner(Qt::BottomLeftCorner, Qt::LeftDockWidgetArea);

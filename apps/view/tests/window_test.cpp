@@ -379,6 +379,14 @@ class WindowTest : public QObject {
     cloth.set_colour_by(ColourBy::tension);
     QTest::qWait(1500);
     keep_picture("large.png");
+    for (QAction* action : window_->findChildren<QAction*>())
+      if (action->text() == QStringLiteral("&Dark")) action->trigger();
+    const QImage dark = cloth.picture({320, 240});
+    QVERIFY(qGray(dark.pixel(2, 2)) < 80);
+    QTest::qWait(500);
+    keep_picture("dark.png");
+    for (QAction* action : window_->findChildren<QAction*>())
+      if (action->text() == QStringLiteral("&Dark")) action->trigger();
   }
 
   // Figures for docs/view.md; none is asked for, as they belong to the machine.
@@ -390,6 +398,14 @@ class WindowTest : public QObject {
     int pictures = 0;
     double first_s = 0;
     QElapsedTimer clock;
+    clock.start();
+    {
+      MainWindow other(folder_->filePath(QStringLiteral("other")));
+      other.show();
+      QVERIFY(other.open(file("start.verm", rib)));
+      QTRY_VERIFY(other.cloth().frames_drawn() > 0 && other.session().fabric());
+      qInfo("window with a small file: %.3f s", static_cast<double>(clock.elapsed()) * 1e-3);
+    }
     connect(&window_->session(), &Session::fabric_changed, this, [&] {
       if (pictures++ == 0) first_s = static_cast<double>(clock.elapsed()) * 1e-3;
     });

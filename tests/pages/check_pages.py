@@ -96,8 +96,9 @@ def option_faults(text):
 
 
 def default_faults(text):
-    """Rows of a table `| `Struct::field` | ... | default |` on the page of an energy."""
-    for struct, field, stated in re.findall(r"^\| `(\w+)::(\w+)` \|.*\| ([^|]+) \|$", text, re.MULTILINE):
+    """Rows | `Struct::field` | ... | default | of the tables of an energy's page."""
+    tables = re.findall(r"^\| parameter .*\| default \|\n(?:\|.*\n)+", text, re.MULTILINE)
+    for struct, field, stated in re.findall(r"^\| `(\w+)::(\w+)` \|.*\| ([^|]+) \|$", "".join(tables), re.MULTILINE):
         body = next((match.group(1) for file in (ROOT / "src").rglob("*.hpp")
                      if (match := re.search(rf"^struct {struct} \{{(.*?)^\}};", file.read_text(),
                                             re.MULTILINE | re.DOTALL))), "")

@@ -7,6 +7,7 @@ import os
 import shutil
 import subprocess
 import tempfile
+import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -37,7 +38,7 @@ def task_numbers(array):
 
 def job_array_fault(text, command, most_tasks=2):
     """None, or what is wrong: an option that Slurm does not know, or a task that fails. Runs the first tasks and the
-    last one, in a folder with examples/, and wants a file of results from each."""
+    last one in a folder with examples/, the first one once more, and wants results (JSON) from each."""
     options = directives(text)
     if strange := sorted(set(options) - KNOWN):
         return f"sbatch options that are not known: {strange}"
@@ -46,8 +47,8 @@ def job_array_fault(text, command, most_tasks=2):
         folder = Path(folder)
         shutil.copytree(ROOT / "examples", folder / "examples")
         (folder / "job.sh").write_text(text)
-        for number in dict.fromkeys([*numbers[:most_tasks], numbers[-1]]):
-            before = set(folder.rglob("*"))
+        for number in [*numbers[:most_tasks], numbers[-1], numbers[0]]:
+            started = time.time_ns()
             environment = dict(os.environ, PATH=f"{Path(command).parent}:{os.environ['PATH']}", SLURM_JOB_ID="1000",
                                SLURM_ARRAY_JOB_ID="1000", SLURM_ARRAY_TASK_ID=str(number),
                                SLURM_ARRAY_TASK_COUNT=str(len(numbers)), SLURM_ARRAY_TASK_MIN=str(numbers[0]),
@@ -57,6 +58,6 @@ def job_array_fault(text, command, most_tasks=2):
                                   stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
             if done.returncode:
                 return f"task {number} ends with {done.returncode}:\n{done.stdout}"
-            if not [file for file in set(folder.rglob("*")) - before if file.suffix == ".json" and file.stat().st_size]:
+            if not any(file.stat().st_mtime_ns >= started and file.stat().st_size for file in folder.rglob("*.json")):
                 return f"task {number} leaves no results:\n{done.stdout}"
     return None

@@ -6,9 +6,13 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <chrono>
+#include <functional>
+#include <future>
 #include <memory>
 #include <mutex>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "cloth.hpp"
@@ -43,11 +47,26 @@ std::vector<FileDiagnostic> diagnostics_of(const Diagnostics& diagnostics);
 // Python's warnings: loopwright.BrokenWarning, loopwright.NotAtRestWarning.
 void warn(const char* category, const std::string& text);
 
+// Whether this process is a copy that fork() made of another. GNU's OpenMP, which CHOLMOD uses, then waits
+// for threads that the thread which forked had before and which are no more: a thread of one's own has none
+// of them.
+bool is_forked();
+// Keeps a signal that came while another thread works, for its Watch; and raises one that no Watch took.
+void note_signals();
+void raise_noted_signal();
+
 // Long work: Python goes on with other threads meanwhile.
 template <class Work>
-auto without_gil(const Work& work) {
+auto without_gil(const Work& work) -> decltype(work()) {
   const py::gil_scoped_release released;
-  return work();
+  if (!is_forked()) return work();
+  std::packaged_task<decltype(work())()> task(std::cref(work));
+  auto result = task.get_future();
+  std::thread worker(std::move(task));
+  while (result.wait_for(std::chrono::milliseconds(100)) != std::future_status::ready) note_signals();
+  worker.join();
+  raise_noted_signal();
+  return result.get();
 }
 
 // HDF5 and OpenGL drivers serve one thread at a time. To be locked without the GIL.

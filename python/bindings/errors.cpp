@@ -1,4 +1,7 @@
 // Errors, warnings and diagnostics, and what else the files of the module share.
+#include <pthread.h>
+
+#include <atomic>
 #include <sstream>
 
 #include "bindings.hpp"
@@ -75,6 +78,31 @@ void warn(const char* category, const std::string& text) {
   if (PyErr_WarnEx(type.ptr(), text.c_str(), 1) != 0) throw py::error_already_set();
 }
 
+bool is_forked() {
+  static std::atomic<bool> forked{false};
+  static const int registered = pthread_atfork(nullptr, nullptr, [] { forked = true; });
+  static_cast<void>(registered);
+  return forked;
+}
+
+namespace {
+std::exception_ptr noted_signal;  // to be used with the GIL held
+}
+
+void note_signals() {
+  const py::gil_scoped_acquire acquired;
+  try {
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+  } catch (...) {
+    noted_signal = std::current_exception();
+  }
+}
+
+void raise_noted_signal() {
+  const py::gil_scoped_acquire acquired;
+  if (noted_signal) std::rethrow_exception(std::exchange(noted_signal, nullptr));
+}
+
 std::mutex& one_at_a_time() {
   static std::mutex mutex;
   return mutex;
@@ -117,11 +145,16 @@ py::dict python_of(const JsonObject& object) {
 std::optional<WindowSize> window_of(const py::object& window) {
   if (window.is_none()) return std::nullopt;
   if (py::isinstance<py::str>(window)) return parsed_window(window.cast<std::string>());
-  const auto [wales, courses] = window.cast<std::pair<std::optional<int>, std::optional<int>>>();
+  std::pair<std::optional<int>, std::optional<int>> counts;
+  try {
+    counts = window.cast<decltype(counts)>();
+  } catch (const py::cast_error&) {
+    throw py::type_error("a window is (wales, courses), None for all of them, or text such as '16x16'");
+  }
   const auto written = [](const std::optional<int>& count) {
     return count ? std::to_string(*count) : std::string("all");
   };
-  return parsed_window(written(wales) + 'x' + written(courses));
+  return parsed_window(written(counts.first) + 'x' + written(counts.second));
 }
 
 bool Watch::goes_on(const std::string& phase, double share, int step, double residual) {
@@ -129,6 +162,7 @@ bool Watch::goes_on(const std::string& phase, double share, int step, double res
   const py::gil_scoped_acquire acquired;
   try {
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    raise_noted_signal();
     if (!callback_.is_none()) {
       const py::object type = py::module_::import("loopwright._errors").attr("Progress");
       stopped_ = callback_(type(phase, share, step, residual)).is(py::bool_(false));
@@ -145,6 +179,7 @@ void Watch::raise() const {
 }
 
 void bind_errors(py::module_& module) {
+  is_forked();  // from now on it is noticed
   py::register_exception_translator(&translate);
   py::class_<FileDiagnostic>(module, "Diagnostic",
                              "One thing that is said of a file: what is wrong, where, and what to do.")

@@ -5,7 +5,7 @@
 #   command       loopwright, its manual page, shell completions, MIME types, examples
 #   documentation the pages of docs
 #   desktop       the desktop application, if a target loopwright_desktop is built; desktop entry, icon
-#   python        the Python module, if a target loopwright_python is built
+#   python        the Python module, if it is built (python/CMakeLists.txt)
 include(CMakePackageConfigHelpers)
 
 set(installed_targets loopwright_options)

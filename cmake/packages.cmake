@@ -58,9 +58,14 @@ if(TARGET loopwright_desktop)
   loopwright_package(desktop loopwright-desktop "knitting notation to relaxed cloth: the desktop application"
     "loopwright ${same_version}")
 endif()
-if(TARGET loopwright_python)
+if(TARGET _loopwright)
+  # a compiled module is for one minor version of Python
+  execute_process(COMMAND ${LOOPWRIGHT_MODULE_PYTHON} -c [[
+import sys
+print(f"python3 (>= {sys.version_info[0]}.{sys.version_info[1]}), python3 (<< {sys.version_info[0]}.{sys.version_info[1] + 1})")]]
+    OUTPUT_VARIABLE this_python OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
   loopwright_package(python python3-loopwright "knitting notation to relaxed cloth: the Python module"
-    "python3, python3-numpy")
+    "${this_python}, python3-numpy")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 endif()
 include(CPack)

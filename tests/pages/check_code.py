@@ -2,7 +2,7 @@
 """Checks the code that the manual shows, by language:
 
   cpp      compiled against the headers of this source, warnings being errors: every block stands for itself
-  python   parsed
+  py       parsed: it is for another program's Python (blocks of `python` are run by tests/python)
   sh       parsed by bash; blocks that start with `loopwright` are run by run_doc_commands.py
   sbatch   parsed by bash, then run as Slurm would run them: see run_job_array.py
   cmake    docs/library.md's is built by tests/packages/use_installed.py
@@ -73,7 +73,7 @@ def notation_fault(text, language):
 def block_fault(language, text):
     if language == "cpp":
         return cpp_fault(text)
-    if language == "python":
+    if language == "py":
         return python_fault(text)
     if language == "sh":
         return shell_fault(text)

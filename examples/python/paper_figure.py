@@ -17,6 +17,7 @@ import loopwright
 parser = argparse.ArgumentParser()
 parser.add_argument("--structures", nargs="+", default=["plain", "rib", "full_cardigan"])
 parser.add_argument("--pixels", type=int, default=400, help="of a picture's longer side")
+parser.add_argument("--dpi", type=int, default=300, help="of a .png")
 parser.add_argument("--out", default="figure.pdf", help=".pdf, .svg or .png")
 arguments, _ = parser.parse_known_args()
 
@@ -83,5 +84,5 @@ for column, (name, cloth) in enumerate(cloths.items()):
     above.text(1.4, 0.55, "2 mm", ha="center", va="bottom", bbox=dict(facecolor="white", edgecolor="none", alpha=0.8, pad=1))
 bar = figure.colorbar(plt.cm.ScalarMappable(plt.Normalize(0, most), plt.cm.viridis), ax=axes[1], shrink=0.9)
 bar.set_label("yarn tension, cN")
-figure.savefig(arguments.out, dpi=300)
+figure.savefig(arguments.out, dpi=arguments.dpi)
 print(", ".join("{}: interlacings {} of {}".format(name, *cloth.interlacings_kept) for name, cloth in cloths.items()))

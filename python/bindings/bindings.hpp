@@ -55,6 +55,9 @@ bool is_forked();
 void note_signals();
 void raise_noted_signal();
 
+// Of cloth that should be at rest: where it is broken or is not.
+void warn_of(const Cloth& relaxed);
+
 // Long work: Python goes on with other threads meanwhile.
 template <class Work>
 auto without_gil(const Work& work) -> decltype(work()) {

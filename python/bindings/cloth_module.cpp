@@ -94,19 +94,10 @@ ClothPointer relax(const Cloth& cloth, std::optional<double> friction, bool let_
     });
     // what was asked of this run alone
     run.options.most_iterations = cloth.piece().options.most_iterations;
-    auto result = std::make_shared<Cloth>(std::move(run));
-    result->assessment();
-    return result;
+    return std::make_shared<Cloth>(std::move(run));
   });
   watch.raise();
-  const InterlacingCheck& kept = relaxed->assessment().interlacings;
-  if (!relaxed->whole())
-    warn("BrokenWarning", "broken: " + std::to_string(kept.intact) + " of " + std::to_string(kept.expected) +
-                              " interlacings intact, " +
-                              std::to_string(static_cast<int>(relaxed->number("pass_throughs").value_or(0))) +
-                              " pass-throughs");
-  if (!relaxed->stopped() && relaxed->number("converged") != 1.0)
-    warn("NotAtRestWarning", "not at rest: " + relaxed->message());
+  warn_of(*relaxed);
   return relaxed;
 }
 
@@ -129,10 +120,18 @@ void export_to(const Cloth& cloth, const std::filesystem::path& file,
   });
 }
 
-Image picture(const Cloth& cloth, const RenderOptions& options) {
+// `pixels_per_mm`: at the middle of what is drawn; none: so that all of it is in the picture.
+Image picture(const Cloth& cloth, const RenderOptions& options, std::optional<double> pixels_per_mm = {}) {
+  const Fabric& fabric = cloth.fabric();
+  if (pixels_per_mm && !(*pixels_per_mm > 0 && *pixels_per_mm < 1e6))
+    throw std::invalid_argument("pixels_per_mm must be a positive number");
   return without_gil([&] {
     const std::lock_guard lock(one_at_a_time());
-    return render(cloth.fabric(), options);
+    if (!pixels_per_mm) return render(fabric, options);
+    const Bounds bounds = fabric_bounds(fabric, drawn_repeats(fabric, options.repeats));
+    Camera camera = fitted_camera(options.view, bounds, static_cast<double>(options.width) / options.height);
+    camera.height = options.height / (*pixels_per_mm * fabric.diameter_mm);
+    return render(fabric, camera, options);
   });
 }
 
@@ -143,8 +142,9 @@ py::array pixels_of(Image image) {
 }
 
 py::array render_to_array(const Cloth& cloth, const std::string& view, std::array<int, 2> size,
-                          std::array<int, 2> repeats, double margin, std::array<std::uint8_t, 3> background,
-                          bool transparent, bool shadows, bool table, int plies, double twist, double fuzz) {
+                          std::array<int, 2> repeats, std::optional<double> pixels_per_mm, double margin,
+                          std::array<std::uint8_t, 3> background, bool transparent, bool shadows, bool table,
+                          int plies, double twist, double fuzz) {
   RenderOptions options;
   const std::optional<View> known = view_named(view);
   if (!known)
@@ -156,7 +156,7 @@ py::array render_to_array(const Cloth& cloth, const std::string& view, std::arra
   options.margin = margin;
   options.style = {background, transparent, shadows, table};
   options.look.plies = plies, options.look.twist = twist, options.look.fuzz = fuzz;
-  return pixels_of(picture(cloth, options));
+  return pixels_of(picture(cloth, options, pixels_per_mm));
 }
 
 py::bytes png_of(const Cloth& cloth) {
@@ -345,6 +345,18 @@ void bind_arrays(py::module_& module) {
 
 }  // namespace
 
+void warn_of(const Cloth& relaxed) {
+  const bool whole = without_gil([&] { return relaxed.whole(); });
+  const InterlacingCheck& kept = relaxed.assessment().interlacings;
+  if (!whole)
+    warn("BrokenWarning", "broken: " + std::to_string(kept.intact) + " of " + std::to_string(kept.expected) +
+                              " interlacings intact, " +
+                              std::to_string(static_cast<int>(relaxed.number("pass_throughs").value_or(0))) +
+                              " pass-throughs");
+  if (!relaxed.stopped() && relaxed.number("converged") != 1.0)
+    warn("NotAtRestWarning", "not at rest: " + relaxed.message());
+}
+
 void bind_cloth(py::module_& module) {
   bind_arrays(module);
   py::class_<Cloth, ClothPointer>(
@@ -426,12 +438,16 @@ void bind_cloth(py::module_& module) {
           py::arg("file"), "Writes a saved state (HDF5), which `load` and the command read back to the bit.")
       .def("render", &render_to_array, py::kw_only(), py::arg("view") = "front",
            py::arg("size") = std::array<int, 2>{1600, 1200}, py::arg("repeats") = std::array<int, 2>{0, 0},
-           py::arg("margin") = 1.06, py::arg("background") = std::array<std::uint8_t, 3>{246, 245, 242},
-           py::arg("transparent") = false, py::arg("shadows") = true, py::arg("table") = true,
-           py::arg("plies") = 2, py::arg("twist") = 0.34, py::arg("fuzz") = 1.0,
+           py::arg("pixels_per_mm") = py::none(), py::arg("margin") = 1.06,
+           py::arg("background") = std::array<std::uint8_t, 3>{246, 245, 242}, py::arg("transparent") = false,
+           py::arg("shadows") = true, py::arg("table") = true, py::arg("plies") = 2, py::arg("twist") = 0.34,
+           py::arg("fuzz") = 1.0,
            "A picture, (height, width, 4) uint8: red, green, blue (sRGB), alpha, rows from the top.\n\n"
            "view: front, back, left, top, corner, left-corner; size: (width, height) in pixels;\n"
-           "repeats: cells to draw, (0, 0): enough for six wales and six courses.")
+           "repeats: cells to draw, (0, 0): enough for six wales and six courses; pixels_per_mm: the scale, "
+           "at the\n"
+           "middle of what is drawn (everywhere in a view across the cloth); None: all of it is in the "
+           "picture.")
       .def("_repr_png_", &png_of)
       .def("__repr__", &description);
 

@@ -1,5 +1,6 @@
 // Stretch tests and membrane constants.
 #include "bindings.hpp"
+#include "experiments/as_knitted.hpp"
 #include "experiments/stretch.hpp"
 #include "homogenise.hpp"
 
@@ -145,6 +146,32 @@ py::dict homogenise_cloth(const Cloth& cloth, const std::vector<double>& course,
   return dict;
 }
 
+ClothPointer relax_as_knitted_cloth(const Cloth& cloth, double machine_width_mm, double take_down_N,
+                                    double flat_gap_mm, std::optional<double> tolerance,
+                                    py::object progress) {
+  Watch watch(std::move(progress));
+  ClothPointer relaxed = without_gil([&] {
+    RelaxRun run;
+    run.options = cloth.piece().options;
+    if (tolerance) run.options.tolerance = *tolerance;
+    run.options.on_progress = [&watch](const RelaxProgress& now) {
+      return watch.goes_on(now.phase, 0.5 * now.radius, now.newton_iterations, now.residual);
+    };
+    KnittedRest rest =
+        relax_as_knitted(cloth.fabric(), run.options, {machine_width_mm, take_down_N, flat_gap_mm});
+    run.options.on_progress = {};
+    run.options.tolerance = cloth.piece().options.tolerance;
+    run.result = std::move(rest.relaxed);
+    run.result.converged = run.result.converged && rest.on_machine.converged;
+    run.radius = run.result.stopped ? 0 : 1;
+    run.linked_before = linking_numbers(cloth.fabric());
+    return std::make_shared<Cloth>(std::move(run));
+  });
+  watch.raise();
+  warn_of(*relaxed);
+  return relaxed;
+}
+
 }  // namespace
 
 void bind_experiments(py::module_& module) {
@@ -185,6 +212,9 @@ void bind_experiments(py::module_& module) {
              py::arg("to") = std::vector<double>{0.3}, py::arg("load") = py::none(), py::arg("step") = 0.02,
              py::arg("load_step") = py::none(), py::arg("held_across") = false,
              py::arg("progress") = py::none());
+  module.def("relax_as_knitted", &relax_as_knitted_cloth, py::arg("cloth"), py::kw_only(),
+             py::arg("machine_width_mm"), py::arg("take_down_N") = 0.0, py::arg("flat_gap_mm") = 0.0,
+             py::arg("tolerance") = py::none(), py::arg("progress") = py::none());
   const HomogeniseRequest usual;
   module.def("homogenise", &homogenise_cloth, py::arg("cloth"), py::kw_only(),
              py::arg("course") = usual.grid.course, py::arg("wale") = usual.grid.wale,

@@ -46,8 +46,8 @@ if TYPE_CHECKING:
 __all__ = [
     "BrokenWarning", "Cloth", "Diagnostic", "Error", "Findings", "NotAtRestWarning", "Program", "Progress", "Source",
     "StretchTest", "Yarn", "YarnForces", "YarnPoints", "__version__", "build", "check", "check_text", "export",
-    "formats", "homogenise", "load", "measure", "progress_bar", "read", "read_curves", "read_text", "relax", "render",
-    "save", "set_threads", "stretch", "threads", "write_png",
+    "formats", "homogenise", "load", "measure", "progress_bar", "read", "read_curves", "read_text", "relax",
+    "relax_as_knitted", "render", "save", "set_threads", "stretch", "threads", "write_png",
 ]
 
 PathLike = Union[str, "_os.PathLike[str]"]
@@ -157,6 +157,17 @@ def relax(source: Source, *, periodic: bool = False, window: Window | None = Non
                                    start_from_cell=not from_template))
     return cloth.relax(friction=friction, let_go=let_go, most_iterations=most_iterations, tolerance=tolerance,
                        progress=progress)
+
+
+def relax_as_knitted(first: Cloth, *, machine_width_mm: float, take_down_N: float = 0.0, flat_gap_mm: float = 0.0,
+                     tolerance: float | None = None, progress: OnProgress | None = None) -> Cloth:
+    """Brings a first geometry to rest by the way that cloth goes: with friction its size depends on it.
+
+    At rest on the needles first, machine_width_mm wide under a pull of take_down_N along its wales; then let go, friction
+    keeping its history. flat_gap_mm: kept flat all the while, the outermost centrelines so far apart; 0: not at all.
+    """
+    return _loopwright.relax_as_knitted(first, machine_width_mm=machine_width_mm, take_down_N=take_down_N,
+                                        flat_gap_mm=flat_gap_mm, tolerance=tolerance, progress=progress)
 
 
 def stretch(source: Source, *, direction: str = "course", to: Sequence[float] = (0.3,),

@@ -100,6 +100,31 @@ def test_pictures_are_the_same(rib, command, tmp_path):
     assert (rib.render(size=(64, 64), transparent=True)[..., 3] == 0).any()
 
 
+def test_a_picture_has_the_scale_that_is_asked_for(rib):
+    """Cells follow each other after as many pixels as their lattice vectors say."""
+    (across, _, _), (_, along, _) = rib.lattice_mm
+    scale = 48 / across
+    pixels = rib.render(size=(200, 200), pixels_per_mm=scale, repeats=(8, 10), table=False)[..., :3].astype(float)
+    assert pixels.std() > 20
+    one, two = pixels[:, :-48], pixels[:, 48:]
+    assert abs(one - two).mean() < 0.1 * pixels.std()
+    assert abs(pixels[:, :-40] - pixels[:, 40:]).mean() > 0.5 * pixels.std()
+    rows = round(along * scale)
+    assert abs(along * scale - rows) < 0.5
+    assert abs(pixels[:-rows] - pixels[rows:]).mean() < 0.3 * pixels.std()
+
+
+def test_what_cloth_went_through_counts(examples):
+    """As the C++ function's own test: a cell on the needles, then let go, is wider than one that never was there."""
+    program = loopwright.read(examples / "structures/garter.verm")
+    first = program.build(periodic=True)
+    pulled = loopwright.relax_as_knitted(first, machine_width_mm=1.5 * first.measure()["width_mm"], flat_gap_mm=1.5)
+    assert pulled.whole and pulled.converged
+    assert pulled.measure()["width_mm"] > 1.01 * loopwright.relax(first).measure()["width_mm"]
+    with pytest.raises(loopwright.Error, match="the width on the machine must be a positive number"):
+        loopwright.relax_as_knitted(first, machine_width_mm=0)
+
+
 def test_findings_are_those_of_the_command(examples, command, tmp_path):
     (tmp_path / "bad.k").write_text(";!knitout-2\n;;Carriers: 1\ninhook 1\nknit + f1\nknit + f2 9\nxfer f1 f2\n")
     said = command.json("check", "bad.k", examples / "swatch.k", "--machine", "kniterate", status=1)

@@ -54,8 +54,8 @@ loopwright_package(documentation loopwright-doc "knitting notation to relaxed cl
 set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_SECTION doc)
 set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_SHLIBDEPS OFF)
-if(TARGET loopwright_desktop)
-  loopwright_package(desktop loopwright-desktop "knitting notation to relaxed cloth: the desktop application"
+if(TARGET loopwright-view)
+  loopwright_package(application loopwright-view "knitting notation to relaxed cloth: the desktop application"
     "loopwright ${same_version}")
 endif()
 if(TARGET _loopwright)

@@ -67,5 +67,7 @@ print(f"python3 (>= {sys.version_info[0]}.{sys.version_info[1]}), python3 (<< {s
   loopwright_package(python python3-loopwright "knitting notation to relaxed cloth: the Python module"
     "${this_python}, python3-numpy")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA
+    ${CMAKE_SOURCE_DIR}/data/debian/python/postinst ${CMAKE_SOURCE_DIR}/data/debian/python/prerm)
 endif()
 include(CPack)

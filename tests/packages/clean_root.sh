@@ -79,7 +79,13 @@ inside "manual page, completion, kinds of files" '
   test "$(kind_of /tmp/examples/swatch.k)" = text/x-knitout
   test "$(kind_of /tmp/examples/structures/rib.verm)" = text/x-vermiculation'
 if ls "$root"/packages/python3-loopwright_* > /dev/null 2>&1; then
-  inside "the Python module" 'python3 -c "import loopwright; print(loopwright.__file__)"'
+  inside "the Python module" '
+    cd /tmp/examples/structures
+    python3 -c "
+import loopwright
+cloth = loopwright.relax(\"rib.verm\", periodic=True)
+print(loopwright.__file__, cloth.interlacings_kept)
+assert cloth.interlacings_kept == (2, 2)"'
 fi
 if ls "$root"/packages/loopwright-view_* > /dev/null 2>&1; then
   inside "the desktop application" '

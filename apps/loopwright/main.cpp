@@ -8,6 +8,7 @@
 
 #include "commands.hpp"
 #include "outputs/write_fabric.hpp"
+#include "self_description.hpp"
 
 namespace {
 
@@ -393,12 +394,7 @@ void add_commands(CLI::App& app, Commands& commands, Action& action) {
   view->add_option("FILE", commands.view.file, "Fabric file or knitout file to open");
   view->callback([&] { action = [&] { return run(commands.view); }; });
 
-  app.add_subcommand("version", "Print the version")->callback([&] {
-    action = [] {
-      std::cout << "loopwright " LOOPWRIGHT_VERSION "\n";
-      return exit_good;
-    };
-  });
+  add_self_description(app, action);
 }
 
 }  // namespace
@@ -406,7 +402,6 @@ void add_commands(CLI::App& app, Commands& commands, Action& action) {
 int main(int argc, char** argv) {
   try {
     CLI::App app("From a knitting notation to relaxed cloth", "loopwright");
-    app.set_version_flag("--version", "loopwright " LOOPWRIGHT_VERSION);
     app.require_subcommand(1);
     Commands commands;
     Action action;

@@ -49,6 +49,16 @@ void each_suffix(const FormatEntry& entry, Visit visit) {
   }
 }
 
+void check_repeats(const Fabric& fabric, const std::array<int, 2>& repeats) {
+  constexpr int most = 1000;
+  for (const int count : repeats)
+    if (count < 1 || count > most)
+      throw std::invalid_argument("repeats are COLUMNSxROWS, each from 1 to 1000, not " +
+                                  std::to_string(repeats[0]) + 'x' + std::to_string(repeats[1]));
+  if (repeats != std::array<int, 2>{1, 1} && !fabric.periodic)
+    throw std::invalid_argument("repeats are for a periodic cell, and this is a piece");
+}
+
 }  // namespace
 
 std::span<const FormatEntry> fabric_formats() { return entries; }
@@ -81,6 +91,7 @@ FabricFormat format_named(std::string_view name) {
 
 void write_fabric(const std::filesystem::path& path, const State& state, FabricFormat format,
                   const ExportOptions& options) {
+  check_repeats(state.fabric, options.repeats);
   switch (format) {
     case FabricFormat::obj_lines:
       return write_obj_lines(path, state.fabric, options);

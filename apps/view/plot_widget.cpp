@@ -76,7 +76,8 @@ void PlotWidget::paintEvent(QPaintEvent*) {
   double legend = area.top() + 4;
   for (std::size_t c = 0; c < plot_.curves.size(); ++c) {
     const PlotCurve& curve = plot_.curves[c];
-    const QColor colour(static_cast<QRgb>(curve_colours[c % curve_colours.size()]));
+    QColor colour(static_cast<QRgb>(curve_colours[c % curve_colours.size()]));
+    if (palette().color(QPalette::Base).lightness() < 128) colour = colour.lighter(190);
     QPainterPath path;
     for (std::size_t i = 0; i < curve.x.size(); ++i) {
       const QPointF there = at(curve.x[i], curve.y[i]);

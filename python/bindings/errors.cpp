@@ -80,7 +80,13 @@ void warn(const char* category, const std::string& text) {
 
 bool is_forked() {
   static std::atomic<bool> forked{false};
-  static const int registered = pthread_atfork(nullptr, nullptr, [] { forked = true; });
+  // nobody is inside HDF5 or a driver while the process is copied
+  static const int registered =
+      pthread_atfork([] { one_at_a_time().lock(); }, [] { one_at_a_time().unlock(); },
+                     [] {
+                       one_at_a_time().unlock();
+                       forked = true;
+                     });
   static_cast<void>(registered);
   return forked;
 }
@@ -179,7 +185,7 @@ void Watch::raise() const {
 }
 
 void bind_errors(py::module_& module) {
-  is_forked();  // from now on it is noticed
+  is_forked();  // from now on it is seen
   py::register_exception_translator(&translate);
   py::class_<FileDiagnostic>(module, "Diagnostic",
                              "One thing that is said of a file: what is wrong, where, and what to do.")

@@ -208,19 +208,31 @@ void bind_experiments(py::module_& module) {
         return "<StretchTest of " + std::to_string(s.points.size()) + " points>";
       });
 
-  module.def("stretch", &stretch_cloth, py::arg("cloth"), py::kw_only(), py::arg("direction") = "course",
-             py::arg("to") = std::vector<double>{0.3}, py::arg("load") = py::none(), py::arg("step") = 0.02,
-             py::arg("load_step") = py::none(), py::arg("held_across") = false,
-             py::arg("progress") = py::none());
-  module.def("relax_as_knitted", &relax_as_knitted_cloth, py::arg("cloth"), py::kw_only(),
-             py::arg("machine_width_mm"), py::arg("take_down_N") = 0.0, py::arg("flat_gap_mm") = 0.0,
-             py::arg("tolerance") = py::none(), py::arg("progress") = py::none());
+  // what `cloth` is asked for as well as the package's functions
+  auto cloth = py::reinterpret_borrow<py::class_<Cloth, ClothPointer>>(module.attr("Cloth"));
+  cloth.def(
+      "stretch", &stretch_cloth, py::kw_only(), py::arg("direction") = "course",
+      py::arg("to") = std::vector<double>{0.3}, py::arg("load") = py::none(), py::arg("step") = 0.02,
+      py::arg("load_step") = py::none(), py::arg("held_across") = false, py::arg("progress") = py::none(),
+      "Pulls it and reads off the forces of its frame; it is brought to rest first if it is not there.\n\n"
+      "direction: 'course', 'wale', 'both' or 'shear'; to: strains to go to, in order; load: forces "
+      "instead,\n"
+      "N/m; step, load_step: the largest steps; held_across: the other size stays as it is.");
+  cloth.def("relax_as_knitted", &relax_as_knitted_cloth, py::kw_only(), py::arg("machine_width_mm"),
+            py::arg("take_down_N") = 0.0, py::arg("flat_gap_mm") = 0.0, py::arg("tolerance") = py::none(),
+            py::arg("progress") = py::none(),
+            "From a first geometry to rest by the way that cloth goes: on the needles, machine_width_mm wide "
+            "under\n"
+            "a pull of take_down_N along its wales, then let go; flat_gap_mm: kept flat all the while, the "
+            "outermost\n"
+            "centrelines so far apart (0: not at all).");
   const HomogeniseRequest usual;
-  module.def("homogenise", &homogenise_cloth, py::arg("cloth"), py::kw_only(),
-             py::arg("course") = usual.grid.course, py::arg("wale") = usual.grid.wale,
-             py::arg("shear") = usual.grid.shear, py::arg("course_pull") = usual.course_pull,
-             py::arg("wale_pull") = usual.wale_pull, py::arg("step") = usual.grid.largest_step,
-             py::arg("grid") = true, py::arg("progress") = py::none());
+  cloth.def("homogenise", &homogenise_cloth, py::kw_only(), py::arg("course") = usual.grid.course,
+            py::arg("wale") = usual.grid.wale, py::arg("shear") = usual.grid.shear,
+            py::arg("course_pull") = usual.course_pull, py::arg("wale_pull") = usual.wale_pull,
+            py::arg("step") = usual.grid.largest_step, py::arg("grid") = true,
+            py::arg("progress") = py::none(),
+            "A cell as a membrane, without friction: the keys of docs/homogenise.md, and 'grid': columns.");
 }
 
 }  // namespace loopwright::python

@@ -166,8 +166,8 @@ def relax_as_knitted(first: Cloth, *, machine_width_mm: float, take_down_N: floa
     At rest on the needles first, machine_width_mm wide under a pull of take_down_N along its wales; then let go, friction
     keeping its history. flat_gap_mm: kept flat all the while, the outermost centrelines so far apart; 0: not at all.
     """
-    return _loopwright.relax_as_knitted(first, machine_width_mm=machine_width_mm, take_down_N=take_down_N,
-                                        flat_gap_mm=flat_gap_mm, tolerance=tolerance, progress=progress)
+    return first.relax_as_knitted(machine_width_mm=machine_width_mm, take_down_N=take_down_N, flat_gap_mm=flat_gap_mm,
+                                  tolerance=tolerance, progress=progress)
 
 
 def stretch(source: Source, *, direction: str = "course", to: Sequence[float] = (0.3,),
@@ -182,8 +182,8 @@ def stretch(source: Source, *, direction: str = "course", to: Sequence[float] = 
     progress = progress and _Stoppable(progress)
     cloth = _cloth_of(source, dict(periodic=periodic, window=window, friction=friction, progress=progress,
                                    start_from_cell=True))
-    return _loopwright.stretch(cloth, direction=direction, to=list(to), load=None if load is None else list(load),
-                               step=step, load_step=load_step, held_across=held_across, progress=progress)
+    return cloth.stretch(direction=direction, to=list(to), load=None if load is None else list(load), step=step,
+                         load_step=load_step, held_across=held_across, progress=progress)
 
 
 def homogenise(source: Source, *, course: Iterable[float] = (-0.05, 0.05, 0.1, 0.15, 0.2),
@@ -197,9 +197,8 @@ def homogenise(source: Source, *, course: Iterable[float] = (-0.05, 0.05, 0.1, 0
         cloth = _cloth_of(source, {})
     else:
         cloth = _cloth_of(source, dict(periodic=True, friction=0.0, segments_per_loop=segments_per_loop))
-    return _loopwright.homogenise(cloth, course=list(course), wale=list(wale), shear=list(shear),
-                                  course_pull=course_pull, wale_pull=wale_pull, step=step, grid=grid,
-                                  progress=progress)
+    return cloth.homogenise(course=list(course), wale=list(wale), shear=list(shear), course_pull=course_pull,
+                            wale_pull=wale_pull, step=step, grid=grid, progress=progress)
 
 
 def measure(source: Source, **piece: Any) -> Measurements:

@@ -124,3 +124,18 @@ def test_everything_public_has_a_docstring():
         if name not in ("Source", "__version__"):
             assert inspect.getdoc(thing), name
     assert (Path(loopwright.__file__).parent / "py.typed").exists()
+
+
+def test_the_type_hints_hold():
+    """mypy finds nothing in the package, and a wrong use of it."""
+    import subprocess
+    import sys
+
+    pytest.importorskip("mypy", reason="mypy (Debian package mypy) is not installed")
+    package = Path(loopwright.__file__).parent
+    wrong = ("import loopwright\nloopwright.relax('rib.verm', periodic='yes')\n"
+             "loopwright.read('rib.verm').build().measure()['width']\n")
+    for arguments, faults in [(["-p", "loopwright"], 0), (["-c", wrong], 2)]:
+        done = subprocess.run([sys.executable, "-m", "mypy", "--strict", "--cache-dir", "/dev/null", *arguments],
+                              cwd=package.parent, capture_output=True, text=True)
+        assert done.stdout.count(": error: ") == faults, done.stdout + done.stderr

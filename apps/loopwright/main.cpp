@@ -8,6 +8,7 @@
 
 #include "commands.hpp"
 #include "outputs/write_fabric.hpp"
+#include "self_description.hpp"
 
 namespace {
 
@@ -388,12 +389,7 @@ void add_commands(CLI::App& app, Commands& commands, Action& action) {
   add_modes_option(*measure, commands.measure.modes);
   measure->callback([&] { action = [&] { return run(commands.measure); }; });
 
-  app.add_subcommand("version", "Print the version")->callback([&] {
-    action = [] {
-      std::cout << "loopwright " LOOPWRIGHT_VERSION "\n";
-      return exit_good;
-    };
-  });
+  add_self_description(app, action);
 }
 
 }  // namespace
@@ -401,7 +397,6 @@ void add_commands(CLI::App& app, Commands& commands, Action& action) {
 int main(int argc, char** argv) {
   try {
     CLI::App app("From a knitting notation to relaxed cloth", "loopwright");
-    app.set_version_flag("--version", "loopwright " LOOPWRIGHT_VERSION);
     app.require_subcommand(1);
     Commands commands;
     Action action;

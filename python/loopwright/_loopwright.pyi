@@ -70,6 +70,13 @@ class Homogenised(Measurements, total=False):
     whole: bool
     stopped: bool
 
+class Sensitivity(Measurements, total=False):
+    """The keys of docs/homogenise.md."""
+
+    relative_change_per_relative_change: dict[str, dict[str, float]]
+    width_deviation_mm: float
+    height_deviation_mm: float
+
 class Diagnostic:
     @property
     def file(self) -> str: ...
@@ -259,6 +266,7 @@ class Cloth:
     def homogenise(self, *, course: list[float] = ..., wale: list[float] = ..., shear: list[float] = ...,
                    course_pull: float = 0.3, wale_pull: float = 0.15, step: float = 0.02, grid: bool = True,
                    progress: OnProgress = None) -> Homogenised: ...
+    def sensitivity(self, *, deviations: dict[str, float] = ..., progress: OnProgress = None) -> Sensitivity: ...
     def points(self, per_segment: int = 4) -> list[YarnPoints]: ...
     def forces(self) -> Optional[YarnForces]: ...
     def export(self, file: PathLike, *, format: Optional[str] = None, per_segment: int = 4, sides: int = 8,

@@ -4,7 +4,7 @@
 #   development   headers, static libraries or the links to the shared ones, the CMake package Loopwright
 #   command       loopwright, its manual page, shell completions, MIME types, examples
 #   documentation the pages of docs
-#   desktop       the desktop application, if a target loopwright_desktop is built; desktop entry, icon
+#   application   the desktop application, if it is built (apps/view); menu entry, icon
 #   python        the Python module, if it is built (python/CMakeLists.txt)
 include(CMakePackageConfigHelpers)
 
@@ -64,9 +64,9 @@ install(FILES README.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT co
 # pages of the manual link to pages elsewhere in the source: bench, studies, GLOSSARY.md
 install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/manual COMPONENT documentation)
 
-# What others' targets need to be found by a desktop.
-if(TARGET loopwright_desktop)
-  install(FILES data/desktop/loopwright.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications COMPONENT desktop)
+# What a desktop needs to find the application.
+if(TARGET loopwright-view)
+  install(FILES data/desktop/loopwright-view.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications COMPONENT application)
   install(FILES data/desktop/loopwright.svg DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps
-    COMPONENT desktop)
+    COMPONENT application)
 endif()

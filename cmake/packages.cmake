@@ -54,8 +54,8 @@ loopwright_package(documentation loopwright-doc "knitting notation to relaxed cl
 set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_SECTION doc)
 set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_SHLIBDEPS OFF)
-if(TARGET loopwright_desktop)
-  loopwright_package(desktop loopwright-desktop "knitting notation to relaxed cloth: the desktop application"
+if(TARGET loopwright-view)
+  loopwright_package(application loopwright-view "knitting notation to relaxed cloth: the desktop application"
     "loopwright ${same_version}")
 endif()
 if(TARGET _loopwright)
@@ -67,5 +67,7 @@ print(f"python3 (>= {sys.version_info[0]}.{sys.version_info[1]}), python3 (<< {s
   loopwright_package(python python3-loopwright "knitting notation to relaxed cloth: the Python module"
     "${this_python}, python3-numpy")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA
+    ${CMAKE_SOURCE_DIR}/data/debian/python/postinst ${CMAKE_SOURCE_DIR}/data/debian/python/prerm)
 endif()
 include(CPack)

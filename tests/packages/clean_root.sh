@@ -79,13 +79,19 @@ inside "manual page, completion, kinds of files" '
   test "$(kind_of /tmp/examples/swatch.k)" = text/x-knitout
   test "$(kind_of /tmp/examples/structures/rib.verm)" = text/x-vermiculation'
 if ls "$root"/packages/python3-loopwright_* > /dev/null 2>&1; then
-  inside "the Python module" 'python3 -c "import loopwright; print(loopwright.__file__)"'
+  inside "the Python module" '
+    cd /tmp/examples/structures
+    python3 -c "
+import loopwright
+cloth = loopwright.relax(\"rib.verm\", periodic=True)
+print(loopwright.__file__, cloth.interlacings_kept)
+assert cloth.interlacings_kept == (2, 2)"'
 fi
-if ls "$root"/packages/loopwright-desktop_* > /dev/null 2>&1; then
+if ls "$root"/packages/loopwright-view_* > /dev/null 2>&1; then
   inside "the desktop application" '
     apt-get install -y --no-install-recommends desktop-file-utils > /tmp/apt.log 2>&1
-    desktop-file-validate /usr/share/applications/loopwright.desktop
-    QT_QPA_PLATFORM=offscreen loopwright view --help > /dev/null'
+    desktop-file-validate /usr/share/applications/loopwright-view.desktop
+    QT_QPA_PLATFORM=offscreen loopwright-view --version'
 fi
 inside "a C++ program" '
   apt-get install -y --no-install-recommends /packages/libloopwright-dev_*.deb g++ cmake make python3-minimal \

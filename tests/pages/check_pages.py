@@ -5,7 +5,7 @@
   - every page of docs is linked from docs/README.md
   - files of the source that are named in back quotes exist
   - tests that are named (`Suite.Name`) exist
-  - options after a subcommand's name (`relax --modes`) are in its help
+  - options after a subcommand's name (`relax --modes`) are in its help; every option of the help is told of somewhere
   - every energy of src/mechanics/energies has a page in docs/energies
   - the defaults that a page of an energy states are those of the source
 
@@ -75,10 +75,15 @@ def test_faults(text):
 
 
 @lru_cache(None)
+def subcommands():
+    overview = subprocess.run([COMMAND, "--help"], text=True, capture_output=True, check=True).stdout
+    return re.findall(r"^  ([a-z]+) ", overview, re.MULTILINE)
+
+
+@lru_cache(None)
 def known_options(subcommand):
     """None: not a subcommand."""
-    overview = subprocess.run([COMMAND, "--help"], text=True, capture_output=True, check=True).stdout
-    if not re.search(rf"^  {subcommand} ", overview, re.MULTILINE):
+    if subcommand not in subcommands():
         return None
     done = subprocess.run([COMMAND, subcommand, "--help"], text=True, capture_output=True, check=True)
     return set(re.findall(r"--[a-z][\w-]*", done.stdout))
@@ -110,7 +115,15 @@ def default_faults(text):
             yield f"{struct}::{field}: the page says {stated.strip()}, the source {found.group(1)}"
 
 
+def untold_options():
+    told = set(re.findall(r"--[a-z][\w-]*", "".join(page.read_text() for page in (ROOT / "docs").rglob("*.md"))))
+    for subcommand in subcommands():
+        for option in sorted(known_options(subcommand) - told - {"--help"}):
+            yield f"no page of docs tells of {subcommand} {option}"
+
+
 def manual_faults():
+    yield from untold_options()
     listed = set(re.findall(r"\]\(([\w/]+\.md)", (ROOT / "docs/README.md").read_text()))
     for page in sorted((ROOT / "docs").rglob("*.md")):
         name = str(page.relative_to(ROOT / "docs"))

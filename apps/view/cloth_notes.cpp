@@ -48,7 +48,7 @@ void ClothView::paint_notes(QPainter& painter, QSize size) {
   }
   // a broken cloth is never shown as good
   const ClothMoment& moment = session_.moment();
-  if (style_ == ClothStyle::yarn && moment.broken())
+  if (style_ == ClothStyle::yarn && session_.broken())
     banner(painter, size,
            tr("BROKEN: %1 of %2 interlacings. This is not what the notation knits.")
                .arg(moment.interlacings.intact)

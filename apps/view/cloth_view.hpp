@@ -69,7 +69,7 @@ class ClothView : public QOpenGLWidget {
   struct Drag {
     MouseAct act = MouseAct::none;
     QPointF start, last;
-    bool moved = false, pulls = false, pulls_edge = false;
+    bool moved = false, pulls = false, pulls_edge = false, pulls_yarn = false;
     StretchDirection edge = StretchDirection::course;
     double edge_side = 1;  // +1: right or top edge
     Vec3 held;             // place that is pulled
@@ -88,7 +88,8 @@ class ClothView : public QOpenGLWidget {
   void paint_notes(QPainter& painter, QSize size);
   void paint_legend(QPainter& painter, QSize size);
   void choose_at(const QPointF& at);
-  void begin_pull(const QPointF& at);
+  void begin_pull(const QPointF& at, bool at_yarn);
+  void begin_yarn_pull(const QPointF& at);
   void pull(const QPointF& at);
   void end_pull();
   double aspect() const;

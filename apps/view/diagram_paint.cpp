@@ -92,9 +92,13 @@ void DiagramView::paintEvent(QPaintEvent* event) {
 
 void DiagramView::paint_pass(QPainter& painter, std::size_t p) {
   const NeedleDiagram& diagram = session_.diagram();
-  const DiagramPass& pass = diagram.passes[p];
+  DiagramPass pass = diagram.passes[p];
+  // what the carriage has not come to yet
+  for (auto* row : {&pass.front, &pass.rear})
+    for (DiagramNeedle& needle : *row)
+      if (begun(p) && !done(p, needle.slot)) needle.operation = NeedleOperation::unused;
   const double usual = painter.opacity();
-  if (last_pass_ >= 0 && static_cast<int>(p) > last_pass_) painter.setOpacity(0.18);
+  if (!begun(p)) painter.setOpacity(0.18);
   const double left = dot(diagram.first_needle - 0.6, 0).x(),
                right = dot(diagram.first_needle + diagram.wales - 0.4, 0).x();
   painter.setPen(QPen(QColor(228, 226, 218), 1));

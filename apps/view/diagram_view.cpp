@@ -92,6 +92,7 @@ void DiagramView::lay_out() {
   }
   keep_in_place(cursor_, before);
   keep_in_place(anchor_, before);
+  list_acts();
   bars();
 }
 
@@ -178,9 +179,40 @@ void DiagramView::set_tool(DiagramTool tool) {
   emit tool_changed();
 }
 
-void DiagramView::set_last_pass(int pass) {
-  last_pass_ = pass;
+// Needles in the order in which the carriage meets them.
+void DiagramView::list_acts() {
+  acts_.clear();
+  const NeedleDiagram& diagram = session_.diagram();
+  for (std::size_t p = 0; p < diagram.passes.size(); ++p) {
+    const DiagramPass& pass = diagram.passes[p];
+    const auto first = static_cast<std::ptrdiff_t>(acts_.size());
+    for (const auto* row : {&pass.front, &pass.rear})
+      for (const DiagramNeedle& here : *row)
+        if (here.operation != NeedleOperation::unused && here.operation != NeedleOperation::inactive)
+          acts_.push_back({p, here.slot, here.at.line > 0 ? here.at : pass.at});
+    const double way = pass.direction == Direction::left ? -1 : 1;
+    std::stable_sort(acts_.begin() + first, acts_.end(),
+                     [way](const Act& a, const Act& b) { return way * a.slot < way * b.slot; });
+  }
+  shown_acts_ = -1;
+}
+
+void DiagramView::show_acts(int count) {
+  shown_acts_ = count >= acts() ? -1 : count;
   viewport()->update();
+}
+
+bool DiagramView::begun(std::size_t pass) const {
+  if (shown_acts_ < 0) return true;
+  return shown_acts_ > 0 && pass <= acts_[static_cast<std::size_t>(shown_acts_ - 1)].pass;
+}
+
+bool DiagramView::done(std::size_t pass, double slot) const {
+  if (shown_acts_ < 0) return true;
+  if (!begun(pass)) return false;
+  const Act& last = acts_[static_cast<std::size_t>(shown_acts_ - 1)];
+  const double way = session_.diagram().passes[pass].direction == Direction::left ? -1 : 1;
+  return pass < last.pass || way * slot <= way * last.slot;
 }
 
 void DiagramView::choose(const Place& place) {

@@ -21,6 +21,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "notation/read_program.hpp"
 #include "outputs/atomic_file.hpp"
 #include "outputs/write_diagram_svg.hpp"
 #include "outputs/write_fabric.hpp"
@@ -52,6 +53,9 @@ MainWindow::MainWindow(const QString& autosave_folder, QWidget* parent)
   autosave_timer_.setInterval(1000);
   connect(&autosave_timer_, &QTimer::timeout, this, [this] { autosave_.keep(session_.document()); });
   connect(&session_, &Session::text_changed, &autosave_timer_, qOverload<>(&QTimer::start));
+  // another editor's changes of the open file are taken at once, unless there are own ones
+  connect(&watcher_, &QFileSystemWatcher::fileChanged, this,
+          [this] { QTimer::singleShot(100, this, &MainWindow::take_changed_file); });
   resize(1280, 800);
   const QSettings settings;
   restoreGeometry(settings.value(QStringLiteral("geometry")).toByteArray());
@@ -242,8 +246,39 @@ bool MainWindow::open(const QString& path) {
     return false;
   }
   remember(path);
+  watch();
   show_title();
   return true;
+}
+
+void MainWindow::watch() {
+  if (!watcher_.files().isEmpty()) watcher_.removePaths(watcher_.files());
+  const auto& path = session_.document().path();
+  if (!path.empty()) watcher_.addPath(QString::fromStdString(path.string()));
+}
+
+void MainWindow::take_changed_file() {
+  watch();  // a file that was replaced is a new one to the watcher
+  Document& document = session_.document();
+  Diagnostics unread;
+  const auto text = read_text(document.path(), unread);
+  if (!text || *text == document.text()) return;
+  if (document.changed()) {
+    say(tr("The file was changed by another program; saving here would replace that."));
+    return;
+  }
+  try {
+    if (document.read_only()) {
+      document.open(document.path());
+    } else {
+      // as a change, so that it can be undone and views stay where they are
+      document.change_to(*text, tr("Changes of another editor").toStdString());
+      document.mark_saved();
+    }
+  } catch (const FileError& fault) {
+    say(QString::fromUtf8(fault.what()));
+  }
+  show_title();
 }
 
 bool MainWindow::save_to(const QString& path) {
@@ -255,6 +290,7 @@ bool MainWindow::save_to(const QString& path) {
   }
   autosave_.forget();
   remember(path);
+  watch();
   show_title();
   return true;
 }
@@ -295,7 +331,7 @@ void MainWindow::export_to(const QString& path) {
     return;
   }
   if (!session_.fabric()) throw std::invalid_argument("there is no cloth to export yet");
-  if (session_.moment().broken())
+  if (session_.broken())
     throw std::invalid_argument(
         "the cloth is broken: it is not what the notation knits, and is not exported");
   if (suffix == QLatin1String("json")) {

@@ -60,6 +60,7 @@ ClothView::~ClothView() {
   makeCurrent();
   buffer_.reset();
   yarns_.reset();
+  moving_yarns_.reset();
   lines_.reset();
   doneCurrent();
 }
@@ -85,7 +86,7 @@ Bounds ClothView::bounds() const {
 void ClothView::take_fabric() {
   if (!session_.fabric()) {
     drawn_ = nullptr;
-    scene_ = nullptr;
+    scene_ = moving_scene_ = nullptr;
     motion_ = nullptr;
     motion_of_ = nullptr;
     follows_ = true;
@@ -128,33 +129,37 @@ void ClothView::ask_for_scene() {
   const int serial = ++scenes_asked_;
   scene_builder_.start([this, serial, fabric, options, spans, kin, model, by, at_work,
                         repeats = repeats_](const std::atomic<bool>& cancelled) mutable {
-    std::shared_ptr<const YarnScene> scene;
-    ClothColours colours;
+    BuiltScene built;
+    built.repeats = repeats;
+    built.coarse = at_work;
     try {
-      colours = cloth_colours(*fabric, model, by, spans, kin);
-      options.colours = colours.segments;
-      if (!cancelled) scene = std::make_shared<const YarnScene>(yarn_scene(*fabric, options));
+      built.colours = cloth_colours(*fabric, model, by, spans, kin);
+      options.colours = built.colours.segments;
+      if (!cancelled) built.scene = std::make_shared<const YarnScene>(yarn_scene(*fabric, options));
+      options.pixels_per_diameter = std::min(options.pixels_per_diameter, 6.0);
+      if (!cancelled && !at_work)
+        built.moving = std::make_shared<const YarnScene>(yarn_scene(*fabric, options));
     } catch (const std::exception&) {
-      scene = nullptr;  // the message of the moment says what is wrong with the fabric
+      built.scene = nullptr;  // the message of the moment says what is wrong with the fabric
     }
     QMetaObject::invokeMethod(
         this,
-        [this, serial, fabric, scene, repeats, at_work, colours = std::move(colours)]() mutable {
+        [this, serial, fabric, built = std::move(built)]() mutable {
           scenes_taken_ = serial;
           drawn_ = fabric;
-          take_scene(scene, std::move(colours), repeats, at_work);
+          take_scene(std::move(built));
         },
         Qt::QueuedConnection);
   });
 }
 
-void ClothView::take_scene(std::shared_ptr<const YarnScene> scene, ClothColours colours,
-                           std::array<int, 2> repeats, bool coarse) {
-  if (!scene) return;
-  scene_ = std::move(scene);
-  colours_ = std::move(colours);
-  repeats_ = repeats;
-  coarse_ = coarse;
+void ClothView::take_scene(BuiltScene built) {
+  if (!built.scene) return;
+  scene_ = std::move(built.scene);
+  moving_scene_ = std::move(built.moving);
+  colours_ = std::move(built.colours);
+  repeats_ = built.repeats;
+  coarse_ = built.coarse;
   uploaded_ = false;
   follow();
   // the work ended meanwhile, or the camera is nearer now
@@ -306,6 +311,7 @@ void ClothView::initializeGL() {
   try {
     // a context of its own after the widget was put into another window
     yarns_ = std::make_unique<YarnRenderer>();
+    moving_yarns_ = std::make_unique<YarnRenderer>();
     lines_ = std::make_unique<StructurePainter>();
     uploaded_ = false;
     buffer_.reset();
@@ -328,6 +334,7 @@ void ClothView::draw_scene(int width, int height, double line_pixels) {
   if (style_ == ClothStyle::yarn) {
     if (scene_ && !uploaded_) {
       yarns_->upload(*scene_);
+      if (moving_scene_) moving_yarns_->upload(*moving_scene_);
       uploaded_ = true;
     }
     DrawStyle style;
@@ -335,7 +342,7 @@ void ClothView::draw_scene(int width, int height, double line_pixels) {
     style.shadows = !moving_ && !coarse_;
     style.table = false;
     if (scene_)
-      yarns_->draw(camera_, style, width, height);
+      (moving_ && moving_scene_ ? moving_yarns_ : yarns_)->draw(camera_, style, width, height);
     else
       lines_->clear(background(), width, height);
   } else {

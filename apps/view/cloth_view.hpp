@@ -78,8 +78,13 @@ class ClothView : public QOpenGLWidget {
   void moved_by_hand();
   void take_fabric();
   void ask_for_scene();
-  void take_scene(std::shared_ptr<const YarnScene> scene, ClothColours colours, std::array<int, 2> repeats,
-                  bool coarse);
+  struct BuiltScene {
+    std::shared_ptr<const YarnScene> scene, moving;
+    ClothColours colours;
+    std::array<int, 2> repeats{1, 1};
+    bool coarse = false;
+  };
+  void take_scene(BuiltScene built);
   void ask_for_motion();
   void tick();
   void draw_scene(int width, int height, double line_pixels);
@@ -113,9 +118,10 @@ class ClothView : public QOpenGLWidget {
   std::unique_ptr<QOpenGLFramebufferObject> buffer_;
   bool buffer_is_current_ = false;
   double moving_frame_ms_ = 0;
-  std::unique_ptr<YarnRenderer> yarns_;
+  std::unique_ptr<YarnRenderer> yarns_, moving_yarns_;
   std::unique_ptr<StructurePainter> lines_;
-  std::shared_ptr<const YarnScene> scene_;
+  std::shared_ptr<const YarnScene> scene_,
+      moving_scene_;  // of a coarser mesh, for while it moves; may be none
   bool uploaded_ = false, coarse_ = false;
   int scenes_asked_ = 0, scenes_taken_ = 0;
   ClothColours colours_;

@@ -2,7 +2,6 @@
 // pictures. Needs a display (Xvfb will do).
 #pragma once
 #include <QApplication>
-#include <QCursor>
 #include <QDoubleSpinBox>
 #include <QElapsedTimer>
 #include <QFile>
@@ -391,6 +390,9 @@ class WindowTest : public QObject {
     emit yarn->editingFinished();
     QVERIFY(
         text().contains(QStringLiteral(";;Yarn-A: wool 2/28 Nm colour=#b03020            ; the usual one")));
+    window_->findChild<QDoubleSpinBox*>(QStringLiteral("Friction A"))->setValue(0.4);
+    QVERIFY2(text().contains(QStringLiteral("friction=0.4")), qPrintable(text()));
+    QVERIFY(text().contains(QStringLiteral("colour=#b03020")));
     yarn->setText(QStringLiteral("wool 2/28 Nm diameter=-3mm"));
     const QString before = text();
     emit yarn->editingFinished();
@@ -429,6 +431,19 @@ class WindowTest : public QObject {
     keep_picture("dark.png");
     for (QAction* action : window_->findChildren<QAction*>())
       if (action->text() == QStringLiteral("&Dark")) action->trigger();
+  }
+
+  // Pictures of other files, to be looked at: LOOPWRIGHT_VIEW_FILES names them, parted by colons.
+  void pictures_of_files() {
+    const QStringList files =
+        qEnvironmentVariable("LOOPWRIGHT_VIEW_FILES").split(QLatin1Char(':'), Qt::SkipEmptyParts);
+    if (files.isEmpty()) QSKIP("set LOOPWRIGHT_VIEW_FILES to files to be looked at");
+    for (qsizetype i = 0; i < files.size(); ++i) {
+      QVERIFY(window_->open(files[i]));
+      QTRY_VERIFY_WITH_TIMEOUT(!window_->session().working() && window_->cloth().scene_is_current(), 60000);
+      QTest::qWait(1500);
+      keep_picture(qPrintable(QStringLiteral("file_%1.png").arg(i)));
+    }
   }
 
   // Figures for docs/view.md; none is asked for, as they belong to the machine.

@@ -54,6 +54,7 @@ FabricPanel::FabricPanel(Session& session, QWidget* parent) : QWidget(parent), s
   auto* outer = new QVBoxLayout(this);
   outer->setContentsMargins(0, 0, 0, 0);
   auto* scroll = new QScrollArea(this);
+  form_ = scroll;
   scroll->setWidgetResizable(true);
   scroll->setFrameShape(QFrame::NoFrame);
   outer->addWidget(scroll);
@@ -224,7 +225,8 @@ void FabricPanel::show_yarn_fields(std::size_t yarn) {
 }
 
 void FabricPanel::show_settings() {
-  setEnabled(!session_.document().read_only());
+  // knitout's headers are the text's own
+  form_->setVisible(!session_.document().read_only());
   if (session_.document().read_only()) return;
   const auto& notation = session_.notation();
   if (!notation) return;  // errors: fields keep what they had

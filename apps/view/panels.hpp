@@ -76,6 +76,7 @@ class FabricPanel : public QWidget {
                              double high, double step, const QString& unit, const QString& tip);
   Session& session_;
   bool filling_ = false;
+  QWidget* form_;
   QFormLayout* yarn_form_;
   std::vector<std::pair<const char*, QDoubleSpinBox*>> numbers_;
   QComboBox *edges_, *gating_;

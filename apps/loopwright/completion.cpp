@@ -45,8 +45,9 @@ void add_arms(BashArms& arms, const SubcommandFacts& subcommand) {
   std::string others;
   for (const OptionFacts& option : subcommand.options) {
     if (!option.takes_value) continue;
-    std::string keys;
-    for (const std::string& word : option.names) keys += (keys.empty() ? "" : "|") + name + ':' + word;
+    std::vector<std::string> after;  // subcommand:option
+    for (const std::string& word : option.names) after.push_back(name + ':' + word);
+    const std::string keys = joined(after, "|");
     if (option.choices.empty()) {
       others += (others.empty() ? "" : "|") + keys;
     } else {
@@ -112,8 +113,9 @@ std::string zsh_arguments(const std::vector<OptionFacts>& options) {
              zsh_value(option) + '\'';
     }
     for (const std::string& name : option.names) {
-      out += " \\\n          '" + name + '[' + what + ']' +
-             (option.takes_value ? ":value:" + zsh_value(option) : "") + '\'';
+      out.append(" \\\n          '").append(name).append("[").append(what).append("]");
+      if (option.takes_value) out.append(":value:").append(zsh_value(option));
+      out += '\'';
     }
   }
   return out;

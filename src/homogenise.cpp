@@ -151,4 +151,25 @@ JsonObject results(const Homogenised& homogenised) {
   return all;
 }
 
+JsonObject results(const std::vector<Sensitivity>& sensitivities) {
+  JsonObject all;
+  for (const Sensitivity& s : sensitivities)
+    all.emplace_back(name_of(s.quantity), JsonObject{{"width", s.width},
+                                                     {"height", s.height},
+                                                     {"course_modulus", s.course_modulus},
+                                                     {"wale_modulus", s.wale_modulus},
+                                                     {"shear_modulus", s.shear_modulus}});
+  return all;
+}
+
+YarnQuantity yarn_quantity_named(std::string_view name) {
+  std::string known;
+  for (const YarnQuantity quantity : yarn_quantities) {
+    if (name_of(quantity) == name) return quantity;
+    known += (known.empty() ? "" : ", ") + name_of(quantity);
+  }
+  throw std::invalid_argument("there is no quantity '" + std::string(name) + "' of a yarn; there are " +
+                              known);
+}
+
 }  // namespace loopwright

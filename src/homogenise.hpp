@@ -4,11 +4,13 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "experiments/curl.hpp"
 #include "experiments/membrane.hpp"
 #include "experiments/membrane_law.hpp"
+#include "experiments/sensitivity.hpp"
 #include "piece.hpp"
 
 namespace loopwright {
@@ -52,5 +54,11 @@ Homogenised homogenise(const RelaxResult& rest, const Piece& piece, const Homoge
 
 // Keys with their units, as docs/homogenise.md lists them, to be put behind those of results().
 JsonObject results(const Homogenised& homogenised);
+
+// By the names of the quantities, per cent of change by one per cent more.
+JsonObject results(const std::vector<Sensitivity>& sensitivities);
+
+// "loop-length" and so on. Throws std::invalid_argument that lists the names.
+YarnQuantity yarn_quantity_named(std::string_view name);
 
 }  // namespace loopwright

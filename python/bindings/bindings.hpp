@@ -44,6 +44,9 @@ struct FileDiagnostic {
 };
 std::vector<FileDiagnostic> diagnostics_of(const Diagnostics& diagnostics);
 
+// Text of a file, which need not be UTF-8: what is not becomes U+FFFD, as the command writes it.
+py::str text(const std::string& bytes);
+
 // Python's warnings: loopwright.BrokenWarning, loopwright.NotAtRestWarning.
 void warn(const char* category, const std::string& text);
 

@@ -185,15 +185,15 @@ py::object lattice_mm(const Cloth& cloth) {
 
 std::string description(const Cloth& cloth) {
   const Fabric& fabric = cloth.fabric();
-  std::string text = "<Cloth";
-  if (!fabric.name.empty()) text += " '" + fabric.name + "'";
-  text += fabric.periodic ? ", a cell of " : ", a piece of ";
-  text += std::to_string(fabric.loops.size()) + " loops, " + std::to_string(fabric.yarns.size()) + " yarns";
+  std::string said = "<Cloth";
+  if (!fabric.name.empty()) said += " '" + fabric.name + "'";
+  said += fabric.periodic ? ", a cell of " : ", a piece of ";
+  said += std::to_string(fabric.loops.size()) + " loops, " + std::to_string(fabric.yarns.size()) + " yarns";
   if (const auto converged = cloth.number("converged"))
-    text += *converged != 0 ? ", at rest" : ", not at rest";
+    said += *converged != 0 ? ", at rest" : ", not at rest";
   else if (cloth.number("radius").value_or(0) < 1)
-    text += ", first geometry";
-  return text + ">";
+    said += ", first geometry";
+  return said + ">";
 }
 
 void bind_arrays(py::module_& module) {
@@ -363,7 +363,7 @@ void bind_cloth(py::module_& module) {
       module, "Cloth",
       "Yarns in space: a first geometry, or cloth at rest. It never changes; what does something to it\n"
       "gives a new one.")
-      .def_property_readonly("name", [](const Cloth& c) { return c.fabric().name; })
+      .def_property_readonly("name", [](const Cloth& c) { return text(c.fabric().name); })
       .def_property_readonly(
           "periodic", [](const Cloth& c) { return c.fabric().periodic; }, "A cell that tiles the plane.")
       .def_property_readonly(
@@ -449,7 +449,7 @@ void bind_cloth(py::module_& module) {
            "middle of what is drawn (everywhere in a view across the cloth); None: all of it is in the "
            "picture.")
       .def("_repr_png_", &png_of)
-      .def("__repr__", &description);
+      .def("__repr__", [](const Cloth& c) { return text(description(c)); });
 
   module.def("load", &load, py::arg("file"));
   module.def("write_png", &write_pixels, py::arg("file"), py::arg("pixels"));

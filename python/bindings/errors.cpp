@@ -37,9 +37,9 @@ std::string line_of(const FileDiagnostic& d) {
   return lines_of(one);
 }
 
-void set_error(const std::string& text, const std::vector<FileDiagnostic>& diagnostics) {
+void set_error(const std::string& said, const std::vector<FileDiagnostic>& diagnostics) {
   const py::object type = py::module_::import("loopwright._errors").attr("Error");
-  const py::object error = type(text, py::tuple(py::cast(diagnostics)));
+  const py::object error = type(text(said), py::tuple(py::cast(diagnostics)));
   PyErr_SetObject(type.ptr(), error.ptr());
 }
 
@@ -61,6 +61,13 @@ void translate(std::exception_ptr thrown) {
 
 }  // namespace
 
+py::str text(const std::string& bytes) {
+  PyObject* const decoded =
+      PyUnicode_DecodeUTF8(bytes.data(), static_cast<Py_ssize_t>(bytes.size()), "replace");
+  if (decoded == nullptr) throw py::error_already_set();
+  return py::reinterpret_steal<py::str>(decoded);
+}
+
 ProgramError::ProgramError(Diagnostics diagnostics)
     : std::runtime_error(lines_of(diagnostics)), diagnostics_(std::move(diagnostics)) {}
 
@@ -73,14 +80,20 @@ std::vector<FileDiagnostic> diagnostics_of(const Diagnostics& diagnostics) {
   return list;
 }
 
-void warn(const char* category, const std::string& text) {
+void warn(const char* category, const std::string& said) {
   const py::object type = py::module_::import("loopwright._errors").attr(category);
-  if (PyErr_WarnEx(type.ptr(), text.c_str(), 1) != 0) throw py::error_already_set();
+  if (PyErr_WarnEx(type.ptr(), said.c_str(), 1) != 0) throw py::error_already_set();
 }
 
 bool is_forked() {
   static std::atomic<bool> forked{false};
-  static const int registered = pthread_atfork(nullptr, nullptr, [] { forked = true; });
+  // nobody is inside HDF5 or a driver while the process is copied
+  static const int registered =
+      pthread_atfork([] { one_at_a_time().lock(); }, [] { one_at_a_time().unlock(); },
+                     [] {
+                       one_at_a_time().unlock();
+                       forked = true;
+                     });
   static_cast<void>(registered);
   return forked;
 }
@@ -129,6 +142,8 @@ py::object python_of(const JsonValue& value) {
           return python_of(held);
         } else if constexpr (std::is_same_v<Held, double>) {
           return std::isfinite(held) ? py::object(py::float_(held)) : py::object(py::none());
+        } else if constexpr (std::is_same_v<Held, std::string>) {
+          return text(held);
         } else {
           return py::cast(held);
         }
@@ -179,11 +194,11 @@ void Watch::raise() const {
 }
 
 void bind_errors(py::module_& module) {
-  is_forked();  // from now on it is noticed
+  is_forked();  // from now on it is seen
   py::register_exception_translator(&translate);
   py::class_<FileDiagnostic>(module, "Diagnostic",
                              "One thing that is said of a file: what is wrong, where, and what to do.")
-      .def_readonly("file", &FileDiagnostic::file)
+      .def_property_readonly("file", [](const FileDiagnostic& d) { return text(d.file); })
       .def_property_readonly(
           "severity", [](const FileDiagnostic& d) { return std::string(to_string(d.said.severity)); },
           "'error', 'warning' or 'advice'.")
@@ -193,17 +208,17 @@ void bind_errors(py::module_& module) {
           "column", [](const FileDiagnostic& d) { return d.said.at.column; },
           "From 1, in bytes; 0: the line as a whole.")
       .def_property_readonly(
-          "message", [](const FileDiagnostic& d) { return d.said.message; },
+          "message", [](const FileDiagnostic& d) { return text(d.said.message); },
           "What is wrong and what to do about it.")
       .def_property_readonly(
-          "remedy", [](const FileDiagnostic& d) { return remedy_of(d.said.message); },
+          "remedy", [](const FileDiagnostic& d) { return text(remedy_of(d.said.message)); },
           "The part of the message that says what to do; '' where the message is one sentence.")
-      .def("__str__", &line_of)
-      .def("__repr__", [](const FileDiagnostic& d) { return "<Diagnostic " + line_of(d) + ">"; })
+      .def("__str__", [](const FileDiagnostic& d) { return text(line_of(d)); })
+      .def("__repr__", [](const FileDiagnostic& d) { return text("<Diagnostic " + line_of(d) + ">"); })
       .def(py::pickle(
           [](const FileDiagnostic& d) {
-            return py::make_tuple(d.file, static_cast<int>(d.said.severity), d.said.at.line, d.said.at.column,
-                                  d.said.message);
+            return py::make_tuple(py::bytes(d.file), static_cast<int>(d.said.severity), d.said.at.line,
+                                  d.said.at.column, py::bytes(d.said.message));
           },
           [](const py::tuple& t) {
             return FileDiagnostic{

@@ -1,4 +1,6 @@
 // Stretch tests and membrane constants.
+#include <map>
+
 #include "bindings.hpp"
 #include "experiments/as_knitted.hpp"
 #include "experiments/stretch.hpp"
@@ -146,6 +148,39 @@ py::dict homogenise_cloth(const Cloth& cloth, const std::vector<double>& course,
   return dict;
 }
 
+py::dict sensitivity_of(const Cloth& cloth, const std::map<std::string, double>& deviations,
+                        py::object progress) {
+  std::vector<Deviation> certain;
+  for (const auto& [name, percent] : deviations) {
+    if (!(percent >= 0 && percent < 100))
+      throw std::invalid_argument("a deviation is a number of per cent, from 0 to below 100");
+    certain.push_back({yarn_quantity_named(name), percent / 100});
+  }
+  Watch watch(std::move(progress));
+  JsonObject all;
+  bool whole = true;
+  without_gil([&] {
+    const Piece piece = elastic_piece(cloth.piece());
+    const RelaxResult rest =
+        elastic_rest_of(piece, [&watch](const char* what, double share, const std::string&) {
+          return watch.goes_on(what, share, 0, 0);
+        });
+    if (rest.stopped) return;
+    const Assessment assessment = assess(rest.fabric);
+    whole = is_whole(assessment, rest.pass_throughs);
+    const std::vector<Sensitivity> found = sensitivities(rest, piece.options);
+    all = results(assessment, rest);
+    all.emplace_back("relative_change_per_relative_change", results(found));
+    if (certain.empty()) return;
+    const SizeDeviation size = size_deviation(found, certain);
+    all.emplace_back("width_deviation_mm", size.width * assessment.measured.width_mm);
+    all.emplace_back("height_deviation_mm", size.height * assessment.measured.height_mm);
+  });
+  watch.raise();
+  if (!whole) warn("BrokenWarning", "broken: interlacings are lost at rest without friction");
+  return python_of(all);
+}
+
 ClothPointer relax_as_knitted_cloth(const Cloth& cloth, double machine_width_mm, double take_down_N,
                                     double flat_gap_mm, std::optional<double> tolerance,
                                     py::object progress) {
@@ -208,19 +243,36 @@ void bind_experiments(py::module_& module) {
         return "<StretchTest of " + std::to_string(s.points.size()) + " points>";
       });
 
-  module.def("stretch", &stretch_cloth, py::arg("cloth"), py::kw_only(), py::arg("direction") = "course",
-             py::arg("to") = std::vector<double>{0.3}, py::arg("load") = py::none(), py::arg("step") = 0.02,
-             py::arg("load_step") = py::none(), py::arg("held_across") = false,
-             py::arg("progress") = py::none());
-  module.def("relax_as_knitted", &relax_as_knitted_cloth, py::arg("cloth"), py::kw_only(),
-             py::arg("machine_width_mm"), py::arg("take_down_N") = 0.0, py::arg("flat_gap_mm") = 0.0,
-             py::arg("tolerance") = py::none(), py::arg("progress") = py::none());
+  // what `cloth` is asked for as well as the package's functions
+  auto cloth = py::reinterpret_borrow<py::class_<Cloth, ClothPointer>>(module.attr("Cloth"));
+  cloth.def(
+      "stretch", &stretch_cloth, py::kw_only(), py::arg("direction") = "course",
+      py::arg("to") = std::vector<double>{0.3}, py::arg("load") = py::none(), py::arg("step") = 0.02,
+      py::arg("load_step") = py::none(), py::arg("held_across") = false, py::arg("progress") = py::none(),
+      "Pulls it and reads off the forces of its frame; it is brought to rest first if it is not there.\n\n"
+      "direction: 'course', 'wale', 'both' or 'shear'; to: strains to go to, in order; load: forces "
+      "instead,\n"
+      "N/m; step, load_step: the largest steps; held_across: the other size stays as it is.");
+  cloth.def("relax_as_knitted", &relax_as_knitted_cloth, py::kw_only(), py::arg("machine_width_mm"),
+            py::arg("take_down_N") = 0.0, py::arg("flat_gap_mm") = 0.0, py::arg("tolerance") = py::none(),
+            py::arg("progress") = py::none(),
+            "From a first geometry to rest by the way that cloth goes: on the needles, machine_width_mm wide "
+            "under\n"
+            "a pull of take_down_N along its wales, then let go; flat_gap_mm: kept flat all the while, the "
+            "outermost\n"
+            "centrelines so far apart (0: not at all).");
+  cloth.def(
+      "sensitivity", &sensitivity_of, py::kw_only(), py::arg("deviations") = std::map<std::string, double>{},
+      py::arg("progress") = py::none(),
+      "How a cell's size and stiffness depend on the data of its yarn, without friction: the keys of\n"
+      "docs/homogenise.md. deviations: standard deviations of quantities in per cent, {'loop-length': 2}.");
   const HomogeniseRequest usual;
-  module.def("homogenise", &homogenise_cloth, py::arg("cloth"), py::kw_only(),
-             py::arg("course") = usual.grid.course, py::arg("wale") = usual.grid.wale,
-             py::arg("shear") = usual.grid.shear, py::arg("course_pull") = usual.course_pull,
-             py::arg("wale_pull") = usual.wale_pull, py::arg("step") = usual.grid.largest_step,
-             py::arg("grid") = true, py::arg("progress") = py::none());
+  cloth.def("homogenise", &homogenise_cloth, py::kw_only(), py::arg("course") = usual.grid.course,
+            py::arg("wale") = usual.grid.wale, py::arg("shear") = usual.grid.shear,
+            py::arg("course_pull") = usual.course_pull, py::arg("wale_pull") = usual.wale_pull,
+            py::arg("step") = usual.grid.largest_step, py::arg("grid") = true,
+            py::arg("progress") = py::none(),
+            "A cell as a membrane, without friction: the keys of docs/homogenise.md, and 'grid': columns.");
 }
 
 }  // namespace loopwright::python

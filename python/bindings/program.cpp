@@ -196,7 +196,7 @@ std::string kind_of(const std::filesystem::path& file) {
 
 void bind_program(py::module_& module) {
   py::class_<Findings>(module, "Findings", "What `check` found in a programme.")
-      .def_property_readonly("file", [](const Findings& f) { return f.diagnostics.file(); })
+      .def_property_readonly("file", [](const Findings& f) { return text(f.diagnostics.file()); })
       .def_property_readonly(
           "ok", [](const Findings& f) { return f.diagnostics.ok(); }, "No error.")
       .def_property_readonly("errors", [](const Findings& f) { return f.diagnostics.errors(); })
@@ -217,21 +217,26 @@ void bind_program(py::module_& module) {
       .def("__bool__", [](const Findings& f) { return f.diagnostics.ok(); })
       .def("__str__",
            [](const Findings& f) {
-             std::string text = ProgramError(f.diagnostics).what();
-             if (!f.diagnostics.ok()) return text;
-             return text + (text.empty() ? "" : "\n") + f.diagnostics.file() + ": " +
-                    std::to_string(f.loops) + " loops, " + std::to_string(f.yarns) + " yarns, " +
-                    std::to_string(f.passes) + " passes, " + std::to_string(f.interlacings) + " interlacings";
+             std::string said = ProgramError(f.diagnostics).what();
+             if (f.diagnostics.ok())
+               said += (said.empty() ? "" : "\n") + f.diagnostics.file() + ": " + std::to_string(f.loops) +
+                       " loops, " + std::to_string(f.yarns) + " yarns, " + std::to_string(f.passes) +
+                       " passes, " + std::to_string(f.interlacings) + " interlacings";
+             return text(said);
            })
       .def("__repr__", [](const Findings& f) {
-        return "<Findings " + f.diagnostics.file() + ": " + std::to_string(f.diagnostics.errors()) +
-               " errors, " + std::to_string(f.diagnostics.warnings()) + " warnings>";
+        return text("<Findings " + f.diagnostics.file() + ": " + std::to_string(f.diagnostics.errors()) +
+                    " errors, " + std::to_string(f.diagnostics.warnings()) + " warnings>");
       });
 
   py::class_<ReadProgram, std::shared_ptr<ReadProgram>>(
       module, "Program", "A knitting programme that was read without errors: a fabric file or knitout.")
-      .def_property_readonly("file", &ReadProgram::file, "The name that messages call it by.")
-      .def_property_readonly("text", &ReadProgram::text, "The notation as it is written.")
+      .def_property_readonly(
+          "file", [](const ReadProgram& program) { return text(program.file()); },
+          "The name that messages call it by.")
+      .def_property_readonly(
+          "text", [](const ReadProgram& program) { return text(program.text()); },
+          "The notation as it is written.")
       .def_property_readonly("suffix", &ReadProgram::suffix)
       .def(
           "changed",
@@ -250,11 +255,11 @@ void bind_program(py::module_& module) {
            "periodic: one repeat as a cell; window: (wales, courses) from the middle, None for all;\n"
            "friction: of yarn on yarn; layout: 'flat', or 'loop': at rest at loop scale;\n"
            "start_from_cell: a held piece starts from its relaxed repeat.")
-      .def("__repr__", [](const ReadProgram& program) { return "<Program " + program.file() + ">"; })
+      .def("__repr__", [](const ReadProgram& program) { return text("<Program " + program.file() + ">"); })
       .def(py::pickle(
           [](const ReadProgram& program) {
-            return py::make_tuple(program.file(), program.text(), program.suffix(), program.stated().settings,
-                                  program.stated().yarn);
+            return py::make_tuple(py::bytes(program.file()), py::bytes(program.text()), program.suffix(),
+                                  program.stated().settings, program.stated().yarn);
           },
           [](const py::tuple& t) {
             return std::make_shared<ReadProgram>(

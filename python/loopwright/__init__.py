@@ -41,13 +41,13 @@ if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
-    from ._loopwright import Columns, Homogenised, Measurements, Window
+    from ._loopwright import Homogenised, Measurements, Sensitivity, Window
 
 __all__ = [
     "BrokenWarning", "Cloth", "Diagnostic", "Error", "Findings", "NotAtRestWarning", "Program", "Progress", "Source",
     "StretchTest", "Yarn", "YarnForces", "YarnPoints", "__version__", "build", "check", "check_text", "export",
     "formats", "homogenise", "load", "measure", "progress_bar", "read", "read_curves", "read_text", "relax",
-    "relax_as_knitted", "render", "save", "set_threads", "stretch", "threads", "write_png",
+    "relax_as_knitted", "render", "save", "sensitivity", "set_threads", "stretch", "threads", "write_png",
 ]
 
 PathLike = Union[str, "_os.PathLike[str]"]
@@ -166,8 +166,8 @@ def relax_as_knitted(first: Cloth, *, machine_width_mm: float, take_down_N: floa
     At rest on the needles first, machine_width_mm wide under a pull of take_down_N along its wales; then let go, friction
     keeping its history. flat_gap_mm: kept flat all the while, the outermost centrelines so far apart; 0: not at all.
     """
-    return _loopwright.relax_as_knitted(first, machine_width_mm=machine_width_mm, take_down_N=take_down_N,
-                                        flat_gap_mm=flat_gap_mm, tolerance=tolerance, progress=progress)
+    return first.relax_as_knitted(machine_width_mm=machine_width_mm, take_down_N=take_down_N, flat_gap_mm=flat_gap_mm,
+                                  tolerance=tolerance, progress=progress)
 
 
 def stretch(source: Source, *, direction: str = "course", to: Sequence[float] = (0.3,),
@@ -182,8 +182,15 @@ def stretch(source: Source, *, direction: str = "course", to: Sequence[float] = 
     progress = progress and _Stoppable(progress)
     cloth = _cloth_of(source, dict(periodic=periodic, window=window, friction=friction, progress=progress,
                                    start_from_cell=True))
-    return _loopwright.stretch(cloth, direction=direction, to=list(to), load=None if load is None else list(load),
-                               step=step, load_step=load_step, held_across=held_across, progress=progress)
+    return cloth.stretch(direction=direction, to=list(to), load=None if load is None else list(load), step=step,
+                         load_step=load_step, held_across=held_across, progress=progress)
+
+
+def _elastic_cell_of(source: Source, segments_per_loop: float) -> Cloth:
+    """A cell with segments enough for second derivatives; a state is taken as it is."""
+    if isinstance(source, Cloth) or (not isinstance(source, Program) and _loopwright.kind_of(_Path(source)) == "state"):
+        return _cloth_of(source, {})
+    return _cloth_of(source, dict(periodic=True, friction=0.0, segments_per_loop=segments_per_loop))
 
 
 def homogenise(source: Source, *, course: Iterable[float] = (-0.05, 0.05, 0.1, 0.15, 0.2),
@@ -193,13 +200,17 @@ def homogenise(source: Source, *, course: Iterable[float] = (-0.05, 0.05, 0.1, 0
     """A cell as a membrane, without friction: stiffness, Poisson's ratios, laws of pulls and forces over a grid of
     strains, by the keys of docs/homogenise.md and, under 'grid', the columns of docs/stretch.md. grid=False leaves
     the grid and its law out."""
-    if isinstance(source, Cloth) or (not isinstance(source, Program) and _loopwright.kind_of(_Path(source)) == "state"):
-        cloth = _cloth_of(source, {})
-    else:
-        cloth = _cloth_of(source, dict(periodic=True, friction=0.0, segments_per_loop=segments_per_loop))
-    return _loopwright.homogenise(cloth, course=list(course), wale=list(wale), shear=list(shear),
-                                  course_pull=course_pull, wale_pull=wale_pull, step=step, grid=grid,
-                                  progress=progress)
+    cloth = _elastic_cell_of(source, segments_per_loop)
+    return cloth.homogenise(course=list(course), wale=list(wale), shear=list(shear), course_pull=course_pull,
+                            wale_pull=wale_pull, step=step, grid=grid, progress=progress)
+
+
+def sensitivity(source: Source, *, deviations: dict[str, float] | None = None, segments_per_loop: float = 24,
+                progress: OnProgress | None = None) -> Sensitivity:
+    """How a cell's size and stiffness depend on the data of its yarn, by the keys of docs/homogenise.md: per cent of change
+    by one per cent more of a quantity. deviations: standard deviations of quantities in per cent, {"loop-length": 2};
+    then the sizes' are given as well."""
+    return _elastic_cell_of(source, segments_per_loop).sensitivity(deviations=deviations or {}, progress=progress)
 
 
 def measure(source: Source, **piece: Any) -> Measurements:

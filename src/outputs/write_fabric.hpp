@@ -21,6 +21,7 @@ enum class FabricFormat {
   bcc_bspline,
   yarns,
   step,
+  step_tubes,
   abaqus,
   calculix,
   points_csv,

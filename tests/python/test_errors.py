@@ -1,12 +1,15 @@
 """What is wrong is raised with the command's words, its place and its remedy; a broken result says so."""
 import inspect
+import os
 import pickle
+import random
 from pathlib import Path
 
 import pytest
 
 import loopwright
 
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 GOOD = ";!vermiculation-1\n;;Gauge: 12\n;;Yarn-A: wool 2/28 Nm\n;;Loop-Length: 5.9 mm\n;;Size: 4 wales x 4 courses\ng\n"
 
 
@@ -46,6 +49,7 @@ def test_a_wrong_programme_is_told_with_its_places():
     (lambda: loopwright.read_text(GOOD).build().yarns[0].centreline(0), "from 1 to 64"),
     (lambda: loopwright.stretch(loopwright.read_text(GOOD), direction="up"), "course, wale, both, shear"),
     (lambda: loopwright.stretch(loopwright.read_text(GOOD), to=[-2.0]), "between -0.9 and 5"),
+    (lambda: loopwright.sensitivity(loopwright.read_text(GOOD), deviations={"colour": 2}), "there are loop-length"),
     (lambda: loopwright.homogenise(loopwright.read_text(GOOD), course=[-0.95]), "strains must ascend"),
 ])
 def test_a_call_that_cannot_be_served_says_what_to_do(call, said, tmp_path, monkeypatch):
@@ -88,6 +92,36 @@ def test_stated_data_count_more_than_the_file():
     assert cells[0].diameter_mm != pytest.approx(0.3)
 
 
+def test_text_that_is_not_utf8_is_read_and_told(tmp_path):
+    """Bytes of an older encoding, in the file and in its name."""
+    swatch = (EXAMPLES / "swatch.k").read_bytes().replace(b"; A small", b"; A sm\xe4ll")
+    (tmp_path / "latin.k").write_bytes(swatch)
+    program = loopwright.read(tmp_path / "latin.k")
+    assert "; A sm\ufffdll" in program.text
+    assert pickle.loads(pickle.dumps(program)).text == program.text
+    assert "UTF-8" in str(loopwright.check(program)) and "UTF-8" in loopwright.check(program).diagnostics[0].message
+    (tmp_path / "name.verm").write_bytes(GOOD.encode().replace(b";;Gauge", b";;Name: caf\xe9\n;;Gauge") + b"q\xe9\n")
+    with pytest.raises(loopwright.Error) as caught:
+        loopwright.read(tmp_path / "name.verm")
+    assert [str(d) for d in pickle.loads(pickle.dumps(caught.value)).diagnostics] == str(caught.value).splitlines()
+    (tmp_path / "name.verm").write_bytes(GOOD.encode().replace(b";;Gauge", b";;Name: caf\xe9\n;;Gauge"))
+    assert loopwright.build(tmp_path / "name.verm", periodic=True).name == "caf\ufffd"
+    unreadable = Path(os.fsdecode(bytes(tmp_path / "f") + b"\xe9.k"))
+    unreadable.write_bytes(b"junk")
+    assert "\ufffd.k" in repr(loopwright.check(unreadable))
+
+
+@pytest.mark.parametrize("suffix", [".k", ".verm", ".h5", ".obj", ".bcc", ".yarns"])
+def test_junk_is_an_error_and_nothing_else(suffix, tmp_path):
+    draw = random.Random(suffix)
+    for _ in range(60):
+        file = tmp_path / ("junk" + suffix)
+        file.write_bytes(draw.randbytes(draw.randrange(300)))
+        with pytest.raises(loopwright.Error):
+            loopwright.build(file)
+        assert isinstance(str(loopwright.check(file)), str)
+
+
 def public_names(thing):
     return {name for name in vars(thing) if not name.startswith("_") and name != "Progress"}
 
@@ -99,7 +133,7 @@ def test_the_type_hints_name_what_there_is():
     compiled = loopwright._loopwright
     tree = ast.parse((Path(loopwright.__file__).parent / "_loopwright.pyi").read_text())
     told = {node.name: node for node in tree.body if isinstance(node, (ast.ClassDef, ast.FunctionDef))}
-    only_types = {"Measurements", "Homogenised"}
+    only_types = {"Measurements", "Homogenised", "Sensitivity"}
     assert set(told) - only_types == public_names(compiled)
     for name, node in told.items():
         if not isinstance(node, ast.ClassDef) or name in only_types:
@@ -124,3 +158,18 @@ def test_everything_public_has_a_docstring():
         if name not in ("Source", "__version__"):
             assert inspect.getdoc(thing), name
     assert (Path(loopwright.__file__).parent / "py.typed").exists()
+
+
+def test_the_type_hints_hold():
+    """mypy finds nothing in the package, and a wrong use of it."""
+    import subprocess
+    import sys
+
+    pytest.importorskip("mypy", reason="mypy (Debian package mypy) is not installed")
+    package = Path(loopwright.__file__).parent
+    wrong = ("import loopwright\nloopwright.relax('rib.verm', periodic='yes')\n"
+             "loopwright.read('rib.verm').build().measure()['width']\n")
+    for arguments, faults in [(["-p", "loopwright"], 0), (["-c", wrong], 2)]:
+        done = subprocess.run([sys.executable, "-m", "mypy", "--strict", "--cache-dir", "/dev/null", *arguments],
+                              cwd=package.parent, capture_output=True, text=True)
+        assert done.stdout.count(": error: ") == faults, done.stdout + done.stderr

@@ -1,6 +1,8 @@
 """The module does what the command does: the same numbers to the last bit, the same files, the same words."""
 import csv
 import io
+import os
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -61,6 +63,13 @@ def test_membrane_constants_are_the_same(examples, command):
     assert found == said
     assert len(grid["course_strain"]) == 2 * 3 * 2
     assert (grid["interlacings_intact"] == grid["interlacings"]).all()
+
+
+def test_sensitivities_are_the_same(examples, command):
+    file = examples / "structures/garter.verm"
+    said = command.json("sensitivity", file, "--segments", "12", "--deviation", "loop-length=2")
+    assert said == loopwright.sensitivity(file, segments_per_loop=12, deviations={"loop-length": 2})
+    assert said["relative_change_per_relative_change"]["loop-length"]["height"] > 0.5
 
 
 def test_states_go_to_and_fro(examples, command, tmp_path):
@@ -136,3 +145,18 @@ def test_findings_are_those_of_the_command(examples, command, tmp_path):
         for key in ("errors", "warnings", "advice", "loops", "yarns", "passes", "interlacings", "instructions"):
             assert getattr(found, key) == entry[key], key
         assert bool(found) == (entry["errors"] == 0)
+
+
+def test_programmes_of_others_are_judged_alike(command):
+    """Every file of the corpus, broken ones among them."""
+    corpus = Path(os.environ.get("LOOPWRIGHT_CORPUS", Path(__file__).parents[3] / "shared/corpus")) / "files"
+    files = sorted(file for file in corpus.rglob("*") if file.suffix in (".k", ".knitout"))
+    if not files:
+        pytest.skip(f"there are no programmes of others in {corpus} (LOOPWRIGHT_CORPUS says where they lie)")
+    findings = [loopwright.check(file) for file in files]
+    said = command.json("check", *files, status=0 if all(findings) else 1)["files"]
+    assert len(files) > 40 and not all(findings)
+    for found, entry in zip(findings, said):
+        assert [found.errors, found.warnings, found.advice, found.loops, found.interlacings] == [
+            entry[key] for key in ("errors", "warnings", "advice", "loops", "interlacings")], entry["file"]
+        assert sorted(d.message for d in found.diagnostics) == sorted(d["message"] for d in entry["diagnostics"])

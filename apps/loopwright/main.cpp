@@ -27,6 +27,7 @@ struct Commands {
   ExportCommand export_;
   AnimateCommand animate;
   MeasureCommand measure;
+  ViewCommand view;
 };
 
 void add_piece_options(CLI::App& command, PieceRequest& piece) {
@@ -388,6 +389,10 @@ void add_commands(CLI::App& app, Commands& commands, Action& action) {
       ->type_name("FILE");
   add_modes_option(*measure, commands.measure.modes);
   measure->callback([&] { action = [&] { return run(commands.measure); }; });
+
+  CLI::App* view = app.add_subcommand("view", "The desktop application");
+  view->add_option("FILE", commands.view.file, "Fabric file or knitout file to open");
+  view->callback([&] { action = [&] { return run(commands.view); }; });
 
   add_self_description(app, action);
 }

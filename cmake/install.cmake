@@ -39,11 +39,12 @@ install(FILES ${CMAKE_BINARY_DIR}/generated/LoopwrightConfig.cmake
   DESTINATION ${package_folder} COMPONENT development)
 
 # The command, and what it says of itself: manual page and completions are printed by the command that was built.
-set(man_page ${CMAKE_BINARY_DIR}/generated/loopwright.1)
+set(man_page ${CMAKE_BINARY_DIR}/generated/loopwright.1.gz)
 set(completion_folder ${CMAKE_BINARY_DIR}/generated/completion)
 add_custom_command(OUTPUT ${man_page} ${completion_folder}/bash ${completion_folder}/zsh ${completion_folder}/fish
   COMMAND ${CMAKE_COMMAND} -E make_directory ${completion_folder}
-  COMMAND loopwright manual -o ${man_page}
+  COMMAND loopwright manual -o ${CMAKE_BINARY_DIR}/generated/loopwright.1
+  COMMAND gzip -9nf ${CMAKE_BINARY_DIR}/generated/loopwright.1
   COMMAND loopwright completion bash -o ${completion_folder}/bash
   COMMAND loopwright completion zsh -o ${completion_folder}/zsh
   COMMAND loopwright completion fish -o ${completion_folder}/fish

@@ -14,6 +14,11 @@ set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 # what a package needs of the others is of the very same build
 set(same_version "(= ${PROJECT_VERSION})")
 
+configure_file(data/debian/changelog.in ${CMAKE_BINARY_DIR}/generated/changelog @ONLY)
+set(changelog ${CMAKE_BINARY_DIR}/generated/changelog.gz)
+execute_process(COMMAND gzip -9nc ${CMAKE_BINARY_DIR}/generated/changelog OUTPUT_FILE ${changelog}
+  COMMAND_ERROR_IS_FATAL ANY)
+
 # loopwright_package(COMPONENT NAME DESCRIPTION [DEPENDS]): the package of a component.
 set(CPACK_COMPONENTS_ALL)
 macro(loopwright_package component name description)
@@ -22,10 +27,12 @@ macro(loopwright_package component name description)
   set(CPACK_DEBIAN_${upper}_PACKAGE_NAME ${name})
   set(CPACK_DEBIAN_${upper}_DESCRIPTION
     "${description}
-Loopwright takes a knitting programme, in vermiculation letters or knitout, and gives back the fabric: every yarn in
-three dimensions, in mechanical equilibrium, ready to be looked at and measured.")
+Loopwright takes a knitting programme, in vermiculation letters or
+knitout, and gives back the fabric: every yarn in three dimensions, in
+mechanical equilibrium, ready to be looked at and measured.")
   set(CPACK_DEBIAN_${upper}_PACKAGE_DEPENDS ${ARGN})
-  install(FILES data/debian/copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${name} COMPONENT ${component})
+  install(FILES data/debian/copyright ${changelog} DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${name}
+    COMPONENT ${component})
 endmacro()
 
 set(library_package)
@@ -33,7 +40,9 @@ if(BUILD_SHARED_LIBS)
   set(library_package libloopwright${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
   loopwright_package(library ${library_package} "knitting notation to relaxed cloth: libraries")
   set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
-  set(CPACK_DEBIAN_LIBRARY_PACKAGE_GENERATE_SHLIBS ON)
+  set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+  set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY "=")
+  set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA ${CMAKE_SOURCE_DIR}/data/debian/triggers)
   set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${CMAKE_BINARY_DIR})
   set(depends_on_library "${library_package} ${same_version}")
 endif()

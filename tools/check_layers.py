@@ -4,7 +4,7 @@
 The order of the stages is read from cmake/stages.cmake, the only place where it is written. Checked are
   - src/<stage>: no header of a stage to the right, none of src/pipeline.hpp or apps/
   - src/*.hpp, src/*.cpp: any stage
-  - apps/<app>: stages, src/pipeline.hpp and the app's own files, not another app's
+  - apps/<app> and python: stages, src/pipeline.hpp and its neighbours, and their own files, not another app's
   - tests/<stage>: the stage and those to its left, as it links; bench and fuzz: any stage
 Quoted includes must name an existing file, as "stage/file.hpp" or beside the including one.
 
@@ -60,7 +60,7 @@ def main():
     root = Path(sys.argv[1] if len(sys.argv) > 1 else Path(__file__).parent.parent).resolve()
     stages = stage_order(root)
     faults, files = [], 0
-    for folder in ("src", "apps", "tests", "bench", "fuzz"):
+    for folder in ("src", "apps", "python", "tests", "bench", "fuzz"):
         for file in sorted((root / folder).rglob("*")):
             if file.suffix not in SUFFIXES:
                 continue

@@ -2,7 +2,7 @@
 # Formats every source file (no argument), or only names those that differ (--check, exit status 1).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-sources=$(find src apps tests bench fuzz -name '*.hpp' -o -name '*.cpp' | sort)
+sources=$(find src apps python tests bench fuzz -name '*.hpp' -o -name '*.cpp' | sort)
 if [[ ${1:-} != --check ]]; then
   xargs clang-format-14 -i <<< "$sources"
   exit

@@ -3,8 +3,6 @@
 #include <stdexcept>
 
 #include "files.hpp"
-#include "geometry/fit_fabric.hpp"
-#include "loop_scale/relaxed_layout.hpp"
 #include "outputs/write_fabric.hpp"
 
 namespace loopwright {
@@ -21,11 +19,7 @@ std::optional<Piece> read_relaxed_layout(const BuildCommand& command) {
   std::optional<Piece> piece;
   if (diagnostics.ok()) {
     try {
-      const RelaxedLayout layout = relaxed_layout(knitting.graph, knitting.program);
-      Fabric fabric = fit_fabric(layout.curves, knitting.graph, layout.model.geometry);
-      fabric.name = knitting.program.settings.name;
-      const RelaxOptions options = relax_options(fabric, knitting.program, command.piece);
-      piece = Piece{saved_state(fabric, options, 0), options};
+      piece = loop_layout_piece(knitting, command.piece);
     } catch (const std::invalid_argument& fault) {
       diagnostics.error({}, fault.what());
     }

@@ -142,4 +142,10 @@ struct MeasureCommand {
 };
 int run(const MeasureCommand& command);
 
+// The desktop application, which takes this program's place.
+struct ViewCommand {
+  std::string file;  // empty: none is opened
+};
+int run(const ViewCommand& command);
+
 }  // namespace loopwright

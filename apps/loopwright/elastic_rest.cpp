@@ -1,9 +1,9 @@
 #include "elastic_rest.hpp"
 
 #include <iostream>
-#include <sstream>
+#include <utility>
 
-#include "experiments/rest_hessian.hpp"
+#include "homogenise.hpp"
 #include "interrupt.hpp"
 #include "progress_bar.hpp"
 
@@ -12,22 +12,16 @@ namespace loopwright {
 std::optional<Piece> read_elastic_piece(const std::string& file, const PieceRequest& request) {
   std::optional<Piece> piece = read_piece(file, names_a_state(file) ? PieceRequest{} : request);
   if (!piece) return piece;
-  piece->options.model.material.friction = 0;
-  piece->options.model.sample_spacing = fine_samples;
-  return piece;
+  return elastic_piece(std::move(*piece));
 }
 
 ElasticRest elastic_rest_of(const std::string& file, const Piece& piece) {
   ProgressBar bar("relaxing");
-  RelaxOptions options = piece.options;
-  options.on_progress = [&bar](const RelaxProgress& progress) {
-    std::ostringstream note;
-    note << progress.phase << ", step " << progress.newton_iterations;
-    bar.show(0.5 * progress.radius, note.str());
-    return !interrupted();
-  };
   ElasticRest rest;
-  rest.relaxed = elastic_rest(piece.state.fabric, options);
+  rest.relaxed = elastic_rest_of(piece, [&bar](const char*, double share, const std::string& note) {
+    bar.show(share, note);
+    return !interrupted();
+  });
   if (rest.relaxed.stopped) {
     std::cerr << file << ": stopped before the cloth was at rest\n";
     rest.status = exit_interrupted;

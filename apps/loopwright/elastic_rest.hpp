@@ -7,11 +7,6 @@
 
 namespace loopwright {
 
-// Distance of contact samples, in d, for second derivatives of the energy: at the usual 0.18 d the ripple of
-// sampled contacts makes the stiffness of plain at rest up to 70 % wrong, at 0.09 d up to 5 %
-// (docs/homogenise.md).
-inline constexpr double fine_samples = 0.09;
-
 // read_piece for that: without friction, with fine samples. A saved state is taken as the piece that it is.
 std::optional<Piece> read_elastic_piece(const std::string& file, const PieceRequest& request);
 

@@ -16,10 +16,7 @@ std::array<int, 2> parsed_repeats(const std::string& text) {
   const auto [cross, fault] = std::from_chars(text.data(), end, repeats[0]);
   if (fault == std::errc() && cross != end && *cross == 'x') {
     const auto [rest, second] = std::from_chars(cross + 1, end, repeats[1]);
-    constexpr int most = 1000;
-    if (second == std::errc() && rest == end && repeats[0] >= 1 && repeats[0] <= most && repeats[1] >= 1 &&
-        repeats[1] <= most)
-      return repeats;
+    if (second == std::errc() && rest == end) return repeats;
   }
   throw std::invalid_argument("--repeats is COLUMNSxROWS, each from 1 to 1000, not '" + text + "'");
 }
@@ -35,8 +32,6 @@ int run(const ExportCommand& command) {
   const std::optional<State> state = read_fabric(command.file, command.piece);
   if (!state) return exit_error;
   const Fabric& fabric = state->fabric;
-  if (options.repeats != std::array<int, 2>{1, 1} && !fabric.periodic)
-    throw std::invalid_argument(command.file + ": --repeats is for a periodic cell, and this is a piece");
   write_fabric(command.out, *state, format, options);
   std::size_t segments = 0;
   for (const FabricYarn& yarn : fabric.yarns) segments += static_cast<std::size_t>(yarn.segments());

@@ -40,7 +40,7 @@ std::optional<Piece> read_curves(const std::string& file, const PieceRequest& re
              << " mm is taken, the distance that 95 % of it keep from other curves (--yarn diameter=... says "
                 "it)\n";
       std::cerr << line.str();
-      piece = Piece{saved_state(fabric, imported.options, 0), imported.options};
+      piece = piece_of(imported);
     }
   } catch (const std::invalid_argument& fault) {
     throw std::invalid_argument(file + ": " + fault.what());
@@ -64,9 +64,7 @@ std::optional<Piece> read_piece(const std::string& file, const PieceRequest& req
     if (request.periodic || request.window)
       throw std::invalid_argument(file +
                                   ": a saved state is one piece; take a window or cell of the notation");
-    Piece piece{read_state(file), {}};
-    piece.options = relax_options(piece.state);
-    return piece;
+    return piece_of(read_state(file));
   }
   if (names_curves(file)) return read_curves(file, request);
   Diagnostics diagnostics(file);
@@ -74,12 +72,7 @@ std::optional<Piece> read_piece(const std::string& file, const PieceRequest& req
   std::optional<Piece> piece;
   if (diagnostics.ok()) {
     try {
-      Fabric fabric = first_geometry(knitting, request);
-      RelaxOptions options = relax_options(fabric, knitting.program, request);
-      if (request.start_from_cell)
-        if (std::optional<Fabric> started = start_from_relaxed_cell(knitting, request, fabric, options))
-          fabric = std::move(*started);
-      piece = Piece{saved_state(fabric, options, options.grow_in ? 0 : 1), options};
+      piece = first_piece(knitting, request);
     } catch (const std::invalid_argument& fault) {
       diagnostics.error({}, fault.what());
     }
@@ -142,8 +135,8 @@ std::string summary(const Assessment& assessment) {
 }
 
 bool say_if_broken(const std::string& file, const Assessment& assessment, int pass_throughs) {
+  if (is_whole(assessment, pass_throughs)) return false;
   const InterlacingCheck& check = assessment.interlacings;
-  if (check.intact == check.expected && pass_throughs == 0) return false;
   std::cerr << file << ": error: broken: " << check.intact << " of " << check.expected
             << " interlacings intact, " << pass_throughs << " pass-throughs\n";
   return true;

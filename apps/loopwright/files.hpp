@@ -6,14 +6,9 @@
 
 #include "commands.hpp"
 #include "outputs/render.hpp"
+#include "piece.hpp"
 
 namespace loopwright {
-
-// A fabric and how mechanics is to treat it.
-struct Piece {
-  State state;
-  RelaxOptions options;
-};
 
 bool names_a_state(const std::string& file);
 

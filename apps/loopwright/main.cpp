@@ -8,6 +8,7 @@
 
 #include "commands.hpp"
 #include "outputs/write_fabric.hpp"
+#include "self_description.hpp"
 
 namespace {
 
@@ -26,6 +27,7 @@ struct Commands {
   ExportCommand export_;
   AnimateCommand animate;
   MeasureCommand measure;
+  ViewCommand view;
 };
 
 void add_piece_options(CLI::App& command, PieceRequest& piece) {
@@ -388,12 +390,11 @@ void add_commands(CLI::App& app, Commands& commands, Action& action) {
   add_modes_option(*measure, commands.measure.modes);
   measure->callback([&] { action = [&] { return run(commands.measure); }; });
 
-  app.add_subcommand("version", "Print the version")->callback([&] {
-    action = [] {
-      std::cout << "loopwright " LOOPWRIGHT_VERSION "\n";
-      return exit_good;
-    };
-  });
+  CLI::App* view = app.add_subcommand("view", "The desktop application");
+  view->add_option("FILE", commands.view.file, "Fabric file or knitout file to open");
+  view->callback([&] { action = [&] { return run(commands.view); }; });
+
+  add_self_description(app, action);
 }
 
 }  // namespace
@@ -401,7 +402,6 @@ void add_commands(CLI::App& app, Commands& commands, Action& action) {
 int main(int argc, char** argv) {
   try {
     CLI::App app("From a knitting notation to relaxed cloth", "loopwright");
-    app.set_version_flag("--version", "loopwright " LOOPWRIGHT_VERSION);
     app.require_subcommand(1);
     Commands commands;
     Action action;

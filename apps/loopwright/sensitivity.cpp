@@ -10,6 +10,7 @@
 
 #include "base/parallel.hpp"
 #include "elastic_rest.hpp"
+#include "homogenise.hpp"
 #include "interrupt.hpp"
 #include "outputs/atomic_file.hpp"
 
@@ -89,14 +90,7 @@ int run(const SensitivityCommand& command) {
   if (!command.csv.empty()) write_text(command.csv, csv_of(all));
   if (!command.json.empty()) {
     JsonObject json = results(rest.assessment, rest.relaxed);
-    JsonObject list;
-    for (const Sensitivity& s : all)
-      list.emplace_back(name_of(s.quantity), JsonObject{{"width", s.width},
-                                                        {"height", s.height},
-                                                        {"course_modulus", s.course_modulus},
-                                                        {"wale_modulus", s.wale_modulus},
-                                                        {"shear_modulus", s.shear_modulus}});
-    json.emplace_back("relative_change_per_relative_change", std::move(list));
+    json.emplace_back("relative_change_per_relative_change", results(all));
     if (!deviations.empty()) {
       json.emplace_back("width_deviation_mm", size.width * rest.assessment.measured.width_mm);
       json.emplace_back("height_deviation_mm", size.height * rest.assessment.measured.height_mm);

@@ -20,18 +20,13 @@ namespace {
 
 StretchTest stretch_test(const StretchCommand& command) {
   StretchTest test;
-  test.direction = command.direction == "course" ? StretchDirection::course
-                   : command.direction == "wale" ? StretchDirection::wale
-                   : command.direction == "both" ? StretchDirection::both
-                                                 : StretchDirection::shear;
+  test.direction = stretch_direction_named(command.direction).value_or(StretchDirection::course);
   test.turning_points = command.to;
   test.largest_step = command.step;
   if (!command.load.empty()) {
     test.control = StretchControl::load;
     test.turning_points = command.load;
-    double largest = 0;
-    for (const double load : command.load) largest = std::max(largest, std::abs(load));
-    test.largest_step = command.load_step.value_or(largest > 0 ? largest / 20 : 1);
+    test.largest_step = command.load_step.value_or(usual_load_step(command.load));
   }
   test.free_across = !command.held_across;
   return test;

@@ -1,5 +1,7 @@
 #include "base/parallel.hpp"
 
+#include <pthread.h>
+
 #include <atomic>
 #include <condition_variable>
 #include <exception>
@@ -93,8 +95,22 @@ class Pool {
 std::mutex pool_mutex;
 int wanted_threads = 0;
 
-Pool& pool() {
+// A forked process (Python's multiprocessing) has none of the threads: its pool, which would wait for them
+// forever, is forgotten, not destroyed, and made anew when there is work. Nobody is in the pool while it is
+// copied.
+std::unique_ptr<Pool>& instance_for_this_process() {
   static std::unique_ptr<Pool> instance;
+  static const int registered = pthread_atfork([] { pool_mutex.lock(); }, [] { pool_mutex.unlock(); },
+                                               [] {
+                                                 static_cast<void>(instance.release());
+                                                 pool_mutex.unlock();
+                                               });
+  static_cast<void>(registered);  // without memory for it a forked process cannot work; nothing else fails
+  return instance;
+}
+
+Pool& pool() {
+  std::unique_ptr<Pool>& instance = instance_for_this_process();
   int threads = wanted_threads > 0 ? wanted_threads : static_cast<int>(std::thread::hardware_concurrency());
   threads = threads < 1 ? 1 : threads > 64 ? 64 : threads;
   if (!instance || instance->threads() != threads) {

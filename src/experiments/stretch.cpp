@@ -67,6 +67,22 @@ FreeMeasures free_measures(const StretchTest& test, const FreeMeasures& usual) {
 
 }  // namespace
 
+std::optional<StretchDirection> stretch_direction_named(std::string_view name) {
+  if (name == "course") return StretchDirection::course;
+  if (name == "wale") return StretchDirection::wale;
+  if (name == "both") return StretchDirection::both;
+  if (name == "shear") return StretchDirection::shear;
+  return std::nullopt;
+}
+
+std::size_t point_count(const StretchTest& test) { return 1 + steps_on_the_way(test).size(); }
+
+double usual_load_step(std::span<const double> loads) {
+  double largest = 0;
+  for (const double load : loads) largest = std::max(largest, std::abs(load));
+  return largest > 0 ? largest / 20 : 1;
+}
+
 StretchResult stretch(const RelaxResult& relaxed, const RelaxOptions& options, const StretchTest& test,
                       const std::function<bool(const StretchPoint&)>& on_point) {
   const Fabric& start = relaxed.fabric;

@@ -3,6 +3,9 @@
 // frame carries are read off.
 #pragma once
 #include <functional>
+#include <optional>
+#include <span>
+#include <string_view>
 #include <vector>
 
 #include "mechanics/relax.hpp"
@@ -11,6 +14,8 @@ namespace loopwright {
 
 enum class StretchDirection { course, wale, both, shear };
 enum class StretchControl { strain, load };
+// "course", "wale", "both", "shear"; nothing for anything else.
+std::optional<StretchDirection> stretch_direction_named(std::string_view name);
 
 struct StretchTest {
   StretchDirection direction = StretchDirection::course;  // course: the width grows, wale: the height
@@ -40,6 +45,11 @@ struct StretchResult {
   Fabric fabric;                     // as it is at the last point
   bool stopped = false;
 };
+
+// How many points the test has, the one at rest included.
+std::size_t point_count(const StretchTest& test);
+// The step of a test under loads, if none is stated: a twentieth of the largest.
+double usual_load_step(std::span<const double> loads);
 
 // `relaxed`: at rest with `options`, with the history of friction there, which is kept through the test, so
 // that loading and unloading differ. `on_point` is called after every point; false stops the test. Throws

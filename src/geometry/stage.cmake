@@ -1,2 +1,2 @@
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-target_link_libraries(loopwright_geometry PRIVATE Eigen3::Eigen)
+target_link_libraries(loopwright_geometry PRIVATE $<BUILD_INTERFACE:Eigen3::Eigen>)

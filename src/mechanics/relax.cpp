@@ -72,7 +72,7 @@ RelaxResult relax(const Fabric& fabric, const RelaxOptions& options) {
     newton_options.on_iteration = [&](int i, double residual) {
       if (!options.on_progress) return true;
       return options.on_progress(
-          {radius < 1 ? "grow-in" : "relax", result.newton_iterations + i, residual, radius});
+          {radius < 1 ? "grow-in" : "relax", result.newton_iterations + i, residual, radius, &state});
     };
     newton_result = newton(model, state, newton_options, shift, grown ? &result.history : nullptr);
     shift = std::max(newton_result.shift, 1e-3);

@@ -12,8 +12,9 @@ namespace loopwright {
 struct RelaxProgress {
   std::string phase;  // "grow-in" or "relax"
   int newton_iterations = 0;
-  double residual = 0;  // largest force on a control point, B/d^2
-  double radius = 1;    // share of the full yarn radius
+  double residual = 0;               // largest force on a control point, B/d^2
+  double radius = 1;                 // share of the full yarn radius
+  const YarnState* state = nullptr;  // where the yarn is; to be looked at until the callback returns
 };
 
 struct RelaxOptions {

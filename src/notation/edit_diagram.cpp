@@ -295,4 +295,50 @@ std::string remove_line(Vermiculation& notation, std::size_t line) {
   return {};
 }
 
+namespace {
+
+// Every pass that is not of one letter, written out to the repeat and changed there by `change`.
+template <class Change>
+std::string change_all_passes(Vermiculation& notation, int wale, const Change& change) {
+  const std::size_t wales = repeat_wales(notation);
+  if (wales == 0) return "the repeat is too wide to be written out";
+  if (wale < 0 || static_cast<std::size_t>(wale) >= wales)
+    return "the repeat has wales 0 to " + std::to_string(wales - 1);
+  std::vector<CourseLine> changed = notation.lines;
+  for (CourseLine& line : changed)
+    for (Pass& pass : line.passes) {
+      if (pass.cells.size() <= 1 && pass.rear.size() <= 1) continue;
+      widen(pass, wales);
+      change(pass, static_cast<std::size_t>(wale));
+    }
+  for (const CourseLine& line : changed)
+    if (std::string refusal = refusal_of(line, notation); !refusal.empty()) return refusal;
+  notation.lines = std::move(changed);
+  return {};
+}
+
+}  // namespace
+
+std::string insert_wale(Vermiculation& notation, int wale) {
+  return change_all_passes(notation, wale, [](Pass& pass, std::size_t at) {
+    for (std::vector<Cell>* row : {&pass.cells, &pass.rear}) {
+      if (row->empty()) continue;
+      const Cell copy = (*row)[at];
+      row->insert(row->begin() + static_cast<std::ptrdiff_t>(at), copy);
+    }
+    for (RackMark& mark : pass.racks)
+      if (mark.before > at) ++mark.before;
+  });
+}
+
+std::string remove_wale(Vermiculation& notation, int wale) {
+  if (repeat_wales(notation) < 2) return "the repeat has a single wale, which stays";
+  return change_all_passes(notation, wale, [](Pass& pass, std::size_t at) {
+    for (std::vector<Cell>* row : {&pass.cells, &pass.rear})
+      if (!row->empty()) row->erase(row->begin() + static_cast<std::ptrdiff_t>(at));
+    for (RackMark& mark : pass.racks)
+      if (mark.before > at) --mark.before;
+  });
+}
+
 }  // namespace loopwright

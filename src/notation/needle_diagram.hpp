@@ -110,4 +110,9 @@ struct NeedlePlace {
 [[nodiscard]] std::string insert_line(Vermiculation& notation, std::size_t line, const CourseLine& course);
 [[nodiscard]] std::string remove_line(Vermiculation& notation, std::size_t line);
 
+/// Makes the repeat a wale wider by a copy of wale `wale`, or narrower without it; passes of one letter,
+/// which repeat at every width, stay as they are written.
+[[nodiscard]] std::string insert_wale(Vermiculation& notation, int wale);
+[[nodiscard]] std::string remove_wale(Vermiculation& notation, int wale);
+
 }  // namespace loopwright

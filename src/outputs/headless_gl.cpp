@@ -11,8 +11,18 @@ namespace loopwright {
 namespace {
 
 constexpr const char* remedy =
-    "install the Debian packages libegl-mesa0 and libgl1-mesa-dri (they draw in software "
+    "install the Debian packages libopengl0, libegl-mesa0 and libgl1-mesa-dri (they draw in software "
     "where there is no graphics card)";
+
+// libepoxy ends the program where a library is missing, so each is looked for first.
+void require_libraries() {
+  const auto there = [](const char* library) { return dlopen(library, RTLD_LAZY | RTLD_LOCAL) != nullptr; };
+  const char* missing = nullptr;
+  if (!there("libEGL.so.1")) missing = "libEGL.so.1";
+  if (!there("libOpenGL.so.0") && !there("libGL.so.1")) missing = "libOpenGL.so.0";
+  if (missing != nullptr)
+    throw NoOpenGl(std::string("no picture can be drawn: the library ") + missing + " is missing; " + remedy);
+}
 
 // Displays in the order in which they are tried.
 std::vector<EGLDisplay> displays() {
@@ -58,9 +68,7 @@ EGLContext context_on(EGLDisplay display) {
 }  // namespace
 
 HeadlessGl::HeadlessGl() {
-  // libepoxy ends the program where the library is missing, so it is looked for first
-  if (dlopen("libEGL.so.1", RTLD_LAZY | RTLD_LOCAL) == nullptr)
-    throw NoOpenGl(std::string("no picture can be drawn: the library libEGL.so.1 is missing; ") + remedy);
+  require_libraries();
   old_display_ = eglGetCurrentDisplay();
   old_context_ = eglGetCurrentContext();
   old_draw_ = eglGetCurrentSurface(EGL_DRAW);

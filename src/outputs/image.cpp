@@ -25,12 +25,11 @@ std::vector<std::uint8_t> without_alpha(const Image& image) {
 }  // namespace
 
 // libpng's simplified interface: it reports errors by value, where the older one jumps over destructors.
-void write_png(const std::filesystem::path& path, const Image& image) {
+std::vector<std::uint8_t> png_bytes(const Image& image) {
   if (image.width <= 0 || image.height <= 0 ||
       image.pixels.size() !=
           4 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height))
-    throw FileError("cannot write " + path.string() + ": the picture is empty");
-  AtomicFile file(path);
+    throw FileError("the picture is empty");
   const bool plain = opaque(image);
   const std::vector<std::uint8_t> rgb = plain ? without_alpha(image) : std::vector<std::uint8_t>{};
   png_image header{};
@@ -39,9 +38,24 @@ void write_png(const std::filesystem::path& path, const Image& image) {
   header.height = static_cast<png_uint_32>(image.height);
   header.format = plain ? PNG_FORMAT_RGB : PNG_FORMAT_RGBA;
   header.flags = PNG_IMAGE_FLAG_FAST;
-  const void* bytes = plain ? rgb.data() : image.pixels.data();
-  if (png_image_write_to_file(&header, file.temporary().c_str(), 0, bytes, 0, nullptr) == 0)
-    throw FileError("cannot write " + path.string() + ": " + header.message);
+  const void* pixels = plain ? rgb.data() : image.pixels.data();
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(header);
+  std::vector<std::uint8_t> bytes(size);
+  if (png_image_write_to_memory(&header, bytes.data(), &size, 0, pixels, 0, nullptr) == 0)
+    throw FileError(header.message);
+  bytes.resize(size);
+  return bytes;
+}
+
+void write_png(const std::filesystem::path& path, const Image& image) {
+  AtomicFile file(path);
+  try {
+    const std::vector<std::uint8_t> bytes = png_bytes(image);
+    file.stream().write(reinterpret_cast<const char*>(bytes.data()),
+                        static_cast<std::streamsize>(bytes.size()));
+  } catch (const FileError& fault) {
+    throw FileError("cannot write " + path.string() + ": " + fault.what());
+  }
   file.commit();
 }
 

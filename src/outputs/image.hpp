@@ -19,7 +19,11 @@ struct Image {
   }
 };
 
-// Writes an 8-bit PNG (RGBA, or RGB where every pixel is opaque). Throws FileError.
+// The bytes of an 8-bit PNG (RGBA, or RGB where every pixel is opaque). Throws FileError for an empty
+// picture.
+std::vector<std::uint8_t> png_bytes(const Image& image);
+
+// Writes them. Throws FileError.
 void write_png(const std::filesystem::path& path, const Image& image);
 
 }  // namespace loopwright

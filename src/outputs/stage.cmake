@@ -10,4 +10,4 @@ pkg_check_modules(HDF5_SERIAL REQUIRED IMPORTED_TARGET hdf5-serial)
 target_include_directories(loopwright_outputs PRIVATE ${EGL_INCLUDE_DIRS})
 # Public where headers or tests of this stage name the library.
 target_link_libraries(loopwright_outputs PUBLIC PkgConfig::EPOXY PkgConfig::HDF5_SERIAL PNG::PNG
-  PRIVATE nlohmann_json::nlohmann_json ${CMAKE_DL_LIBS})
+  PRIVATE $<BUILD_INTERFACE:nlohmann_json::nlohmann_json> ${CMAKE_DL_LIBS})

@@ -235,8 +235,8 @@ void draw_line(const StructureScene& scene, const StructureScene::Line& line, co
 
 }  // namespace
 
-struct StructureRenderer::Gl {
-  Gl(int width, int height) : canvas(width, height) {
+struct StructurePainter::Gl {
+  Gl() {
     program = linked_program(vertex_shader, fragment_shader);
     glGenVertexArrays(1, &array);
     glGenBuffers(1, &buffer);
@@ -247,6 +247,7 @@ struct StructureRenderer::Gl {
     glEnableVertexAttribArray(1);
     glVertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, sizeof(Vertex),
                           reinterpret_cast<const void*>(offsetof(Vertex, colour)));
+    glBindVertexArray(0);
   }
   ~Gl() {
     glDeleteBuffers(1, &buffer);
@@ -256,10 +257,51 @@ struct StructureRenderer::Gl {
   Gl(const Gl&) = delete;
   Gl& operator=(const Gl&) = delete;
 
-  HeadlessGl context;
-  Canvas canvas;
   GLuint program = 0, array = 0, buffer = 0;
   std::vector<Vertex> vertices;
+};
+
+StructurePainter::StructurePainter() : gl_(std::make_unique<Gl>()) {}
+StructurePainter::~StructurePainter() = default;
+
+void StructurePainter::clear(std::array<std::uint8_t, 3> background, int width, int height) {
+  glViewport(0, 0, width, height);
+  glDisable(GL_SCISSOR_TEST);
+  glDepthMask(GL_TRUE);
+  glClearColor(background[0] / 255.0F, background[1] / 255.0F, background[2] / 255.0F, 1);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+}
+
+void StructurePainter::draw(const StructureScene& scene, const Camera& camera, int width, int height,
+                            double line_pixels) {
+  const Projector projector(camera, width, height);
+  std::vector<Vertex>& vertices = gl_->vertices;
+  vertices.clear();
+  for (const StructureScene::Cube& cube : scene.cubes) projector.cube(cube, vertices);
+  for (const StructureScene::Line& line : scene.lines)
+    draw_line(scene, line, projector, line_pixels, vertices);
+  glViewport(0, 0, width, height);
+  glDisable(GL_BLEND);
+  glDisable(GL_CULL_FACE);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LEQUAL);
+  glUseProgram(gl_->program);
+  glBindVertexArray(gl_->array);
+  glBindBuffer(GL_ARRAY_BUFFER, gl_->buffer);
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex)), vertices.data(),
+               GL_STREAM_DRAW);
+  glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(vertices.size()));
+  glBindVertexArray(0);
+  glUseProgram(0);
+  glDisable(GL_DEPTH_TEST);
+}
+
+struct StructureRenderer::Gl {
+  Gl(int width, int height) : canvas(width, height) {}
+
+  HeadlessGl context;  // current before what follows is made
+  Canvas canvas;
+  StructurePainter painter;
 };
 
 StructureRenderer::StructureRenderer(int width, int height) : width_(width), height_(height) {
@@ -271,26 +313,9 @@ StructureRenderer::StructureRenderer(int width, int height) : width_(width), hei
 StructureRenderer::~StructureRenderer() = default;
 
 Image StructureRenderer::draw(const StructureScene& scene, const Camera& camera) {
-  const Projector projector(camera, width_, height_);
-  std::vector<Vertex>& vertices = gl_->vertices;
-  vertices.clear();
-  const double pixels = std::max(1.0, height_ / 600.0);
-  for (const StructureScene::Cube& cube : scene.cubes) projector.cube(cube, vertices);
-  for (const StructureScene::Line& line : scene.lines) draw_line(scene, line, projector, pixels, vertices);
   gl_->canvas.bind();
-  glViewport(0, 0, width_, height_);
-  glDisable(GL_BLEND);
-  glDisable(GL_CULL_FACE);
-  glEnable(GL_DEPTH_TEST);
-  glDepthFunc(GL_LEQUAL);
-  glClearColor(white[0] / 255.0F, white[1] / 255.0F, white[2] / 255.0F, 1);
-  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-  glUseProgram(gl_->program);
-  glBindVertexArray(gl_->array);
-  glBindBuffer(GL_ARRAY_BUFFER, gl_->buffer);
-  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex)), vertices.data(),
-               GL_STREAM_DRAW);
-  glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(vertices.size()));
+  gl_->painter.clear(white, width_, height_);
+  gl_->painter.draw(scene, camera, width_, height_, std::max(1.0, height_ / 600.0));
   return gl_->canvas.pixels();
 }
 

@@ -47,6 +47,26 @@ void append(StructureScene& scene, const StructureScene& other);
 void add_floor(StructureScene& scene, const Bounds& bounds);
 Bounds bounds_of(const StructureScene& scene);
 
+// Draws with OpenGL 3.3 core into whatever framebuffer is bound, which must have a depth buffer; every call
+// needs the context that was current at construction.
+class StructurePainter {
+ public:
+  StructurePainter();   // throws std::runtime_error where the driver refuses
+  ~StructurePainter();  // the context must be current
+  StructurePainter(const StructurePainter&) = delete;
+  StructurePainter& operator=(const StructurePainter&) = delete;
+
+  // Adds the scene to what is drawn already, in a viewport of `width` x `height` pixels whose usual line is
+  // `line_pixels` wide.
+  void draw(const StructureScene& scene, const Camera& camera, int width, int height, double line_pixels);
+  // Clears the viewport first.
+  void clear(std::array<std::uint8_t, 3> background, int width, int height);
+
+ private:
+  struct Gl;
+  std::unique_ptr<Gl> gl_;
+};
+
 // Draws without a screen, four samples a pixel; keeps its OpenGL context, so that a sequence is quick.
 class StructureRenderer {
  public:

@@ -9,6 +9,7 @@
 #include "outputs/exchange/write_ply.hpp"
 #include "outputs/exchange/write_points_csv.hpp"
 #include "outputs/exchange/write_step.hpp"
+#include "outputs/exchange/write_step_tubes.hpp"
 #include "outputs/exchange/write_vtp.hpp"
 #include "outputs/write_obj.hpp"
 
@@ -16,7 +17,7 @@ namespace loopwright {
 namespace {
 
 // A longer suffix stands before one that it ends in.
-constexpr std::array<FormatEntry, 14> entries{{
+constexpr std::array<FormatEntry, 15> entries{{
     {FabricFormat::obj_tubes, "obj-tubes", ".tubes.obj", "Wavefront OBJ, tubes"},
     {FabricFormat::obj_lines, "obj", ".obj", "Wavefront OBJ, centrelines"},
     {FabricFormat::ply, "ply", ".ply", "PLY, tubes with colours and source lines"},
@@ -27,6 +28,7 @@ constexpr std::array<FormatEntry, 14> entries{{
     {FabricFormat::bcc_bspline, "bcc-bspline", "", "BCC, the yarns' own control points"},
     {FabricFormat::yarns, "yarns", ".yarns", "yarns of the .smobj tools"},
     {FabricFormat::step, "step", ".step .stp", "STEP AP214, exact B-spline curves"},
+    {FabricFormat::step_tubes, "step-tubes", ".tubes.step .tubes.stp", "STEP AP214, yarns as solids"},
     {FabricFormat::abaqus, "abaqus", ".inp", "Abaqus beam model"},
     {FabricFormat::calculix, "calculix", ".ccx.inp", "CalculiX beam model"},
     {FabricFormat::points_csv, "csv", ".csv", "a line a point"},
@@ -47,6 +49,16 @@ void each_suffix(const FormatEntry& entry, Visit visit) {
     visit(rest.substr(0, end));
     rest.remove_prefix(std::min(end + 1, rest.size()));
   }
+}
+
+void check_repeats(const Fabric& fabric, const std::array<int, 2>& repeats) {
+  constexpr int most = 1000;
+  for (const int count : repeats)
+    if (count < 1 || count > most)
+      throw std::invalid_argument("repeats are COLUMNSxROWS, each from 1 to 1000, not " +
+                                  std::to_string(repeats[0]) + 'x' + std::to_string(repeats[1]));
+  if (repeats != std::array<int, 2>{1, 1} && !fabric.periodic)
+    throw std::invalid_argument("repeats are for a periodic cell, and this is a piece");
 }
 
 }  // namespace
@@ -81,6 +93,7 @@ FabricFormat format_named(std::string_view name) {
 
 void write_fabric(const std::filesystem::path& path, const State& state, FabricFormat format,
                   const ExportOptions& options) {
+  check_repeats(state.fabric, options.repeats);
   switch (format) {
     case FabricFormat::obj_lines:
       return write_obj_lines(path, state.fabric, options);
@@ -102,6 +115,8 @@ void write_fabric(const std::filesystem::path& path, const State& state, FabricF
       return write_yarns(path, state.fabric, options);
     case FabricFormat::step:
       return write_step(path, state.fabric, options);
+    case FabricFormat::step_tubes:
+      return write_step_tubes(path, state.fabric, options);
     case FabricFormat::abaqus:
       return write_beams(path, state, BeamDialect::abaqus, options);
     case FabricFormat::calculix:

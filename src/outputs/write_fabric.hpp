@@ -21,6 +21,7 @@ enum class FabricFormat {
   bcc_bspline,
   yarns,
   step,
+  step_tubes,
   abaqus,
   calculix,
   points_csv,
@@ -44,7 +45,7 @@ FabricFormat fabric_format(const std::filesystem::path& path);
 FabricFormat format_named(std::string_view name);
 
 // `state`: a plain Fabric goes in as State{fabric, {}, {}}. Throws FileError; std::invalid_argument where a
-// format cannot hold the fabric.
+// format cannot hold the fabric, and for repeats that are not from 1 to 1000 or of a fabric that is no cell.
 void write_fabric(const std::filesystem::path& path, const State& state, FabricFormat format,
                   const ExportOptions& options = {});
 // In the format that the name's suffix means.

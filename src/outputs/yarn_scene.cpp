@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 #include <stdexcept>
 
 #include "base/parallel.hpp"
@@ -82,7 +83,8 @@ class TubeBuilder {
   TubeBuilder(YarnScene& scene, const Sky& sky, double pixels_per_diameter)
       : scene_(scene), sky_(sky), pixels_per_diameter_(pixels_per_diameter) {}
 
-  void add(const Fabric& fabric, std::size_t y) {
+  // `colours`: by segment; empty: the yarn's own.
+  void add(const Fabric& fabric, std::size_t y, std::span<const std::array<std::uint8_t, 3>> colours) {
     const FabricYarn& yarn = fabric.yarns[y];
     const Detail detail = detail_for(yarn, pixels_per_diameter_);
     const std::vector<TubeRing> rings = tube_rings(fabric, yarn, detail.per_segment);
@@ -104,6 +106,11 @@ class TubeBuilder {
     const std::size_t first = scene_.vertices.size();
     first_vertex_.clear();
     for (std::size_t k = 0; k < rings.size(); ++k) {
+      if (!colours.empty()) {
+        const auto& here =
+            colours[std::min(k / static_cast<std::size_t>(detail.per_segment), colours.size() - 1)];
+        colour_ = {here[0], here[1], here[2], 255};
+      }
       const double arc = rings[k].arc * stretch - start;
       add_ring(rings[k], arc);
       if (k > 0) join_last_rings();
@@ -240,7 +247,12 @@ YarnScene yarn_scene(const Fabric& fabric, const SceneOptions& options) {
     }
   const Sky sky = options.look.occlusion ? Sky(fabric) : Sky();
   TubeBuilder builder(scene, sky, options.pixels_per_diameter);
-  for (std::size_t y = 0; y < fabric.yarns.size(); ++y) builder.add(fabric, y);
+  if (!options.colours.empty() && options.colours.size() != fabric.yarns.size())
+    throw std::invalid_argument("colours are given for every yarn or for none");
+  for (std::size_t y = 0; y < fabric.yarns.size(); ++y)
+    builder.add(fabric, y,
+                options.colours.empty() ? std::span<const std::array<std::uint8_t, 3>>()
+                                        : std::span(options.colours[y]));
   return scene;
 }
 

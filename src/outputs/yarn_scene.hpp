@@ -47,6 +47,8 @@ struct SceneOptions {
   std::array<int, 2> repeats{0, 0};
   double pixels_per_diameter = 24;  // size on the screen for which the mesh is fine enough
   YarnLook look;
+  // by yarn and segment of its spline, sRGB; empty: every yarn in its own colour
+  std::vector<std::vector<std::array<std::uint8_t, 3>>> colours{};
 };
 
 // The repeats that will be drawn: as asked, or enough cells for six wales and six courses. {1, 1} for a

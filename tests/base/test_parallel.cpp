@@ -1,10 +1,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <atomic>
+#include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "base/parallel.hpp"
@@ -71,6 +78,34 @@ TEST_P(Parallel, ManySmallRounds) {
   for (int round = 0; round < 2000; ++round)
     parallel_chunks(8, [&](int i) { ++values[static_cast<std::size_t>(i)]; });
   EXPECT_THAT(values, testing::Each(2000));
+}
+
+// A copy of the process has none of the pool's threads: it must neither wait for them nor join them at its
+// end.
+TEST_P(Parallel, AForkedProcessWorksAndEnds) {
+#ifdef __SANITIZE_THREAD__
+  GTEST_SKIP() << "ThreadSanitizer starts no threads after a fork";
+#endif
+  std::atomic<int> before = 0;
+  parallel_chunks(50, [&](int) { ++before; });
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    std::atomic<int> count = 0;
+    parallel_chunks(50, [&](int) { ++count; });
+    std::_Exit(count == 50 ? 0 : 1);
+  }
+  int status = -1;
+  pid_t ended = 0;
+  for (int tenths = 0; tenths < 100 && ended == 0; ++tenths) {
+    ended = waitpid(child, &status, WNOHANG);
+    if (ended == 0) std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  if (ended == 0) kill(child, SIGKILL), waitpid(child, &status, 0);
+  EXPECT_EQ(ended, child) << "the copy hangs";
+  EXPECT_EQ(status, 0);
+  parallel_chunks(50, [&](int) { ++before; });
+  EXPECT_EQ(before, 100);
 }
 
 TEST(ParallelThreads, ZeroIsTheNumberOfProcessors) {

@@ -27,6 +27,61 @@ def read_step(reader, path):
     return curves
 
 
+def read_solids(reader, path):
+    """(sound, volume, surface, volume of its mesh, places on the side) of each."""
+    done = subprocess.run([reader, str(path)], text=True, stdout=subprocess.PIPE, check=True)
+    solids = []
+    for line in done.stdout.splitlines():
+        if line.startswith("solid "):
+            numbers = [float(word) for word in line.split()[1:]]
+            solids.append((numbers[0] == 1, *numbers[1:4], [numbers[k:k + 3] for k in range(4, len(numbers), 3)]))
+    return solids
+
+
+def check_tube(solid, diameter, length, caps, check, name):
+    """Pappus: volume and side of a tube are those of the straight one of its length."""
+    sound, volume, surface, mesh, _ = solid
+    check.holds(sound, name + ": OpenCASCADE finds a sound solid")
+    check.near(volume, math.pi / 4 * diameter ** 2 * length, 1e-4, name + ": volume")
+    check.near(surface, math.pi * diameter * length + caps * math.pi / 4 * diameter ** 2, 1e-4, name + ": surface")
+    check.near(mesh, volume, 0.04, name + ": volume of its mesh")
+
+
+def check_solids(command, reader, folder, check):
+    e.run(command, "export", "helix.obj", "--yarn", "diameter=1mm", "-o", "helix.tubes.step", folder=folder)
+    helix, = read_solids(reader, folder / "helix.tubes.step")
+    check_tube(helix, e.HELIX_DIAMETER, e.HELIX_LENGTH, 2, check, "helix.tubes.step")
+    # every place is half a diameter from the helix: the nearest point of it, by Newton's method on its angle
+    off = 0
+    for x, y, z in helix[4]:
+        angle = 2 * math.pi * y / e.HELIX_RISE
+        angle += math.remainder(math.atan2(z, x) - angle, 2 * math.pi)
+        rise = e.HELIX_RISE / (2 * math.pi)
+        for _ in range(20):
+            px, py, pz = e.helix_point(angle)
+            slope = ((px - x) * -pz + (py - y) * rise + (pz - z) * px)
+            angle -= slope / (e.HELIX_RADIUS ** 2 + rise ** 2 - ((px - x) * px + (pz - z) * pz))
+        off = max(off, abs(math.dist(e.helix_point(angle), (x, y, z)) - e.HELIX_DIAMETER / 2))
+    check.holds(off < 0.01, f"helix.tubes.step: its side within {off:.2g} mm of half a diameter from the helix")
+
+    steps, radius = 48, 5.0  # a ring
+    with open(folder / "ring.obj", "w") as out:
+        for k in range(steps):
+            angle = 2 * math.pi * k / steps
+            out.write(f"v {radius * math.cos(angle):.15g} {radius * math.sin(angle):.15g} 0\n")
+        out.write("l " + " ".join(str(k % steps + 1) for k in range(steps + 1)) + "\n")
+    e.run(command, "export", "ring.obj", "--yarn", "diameter=1mm", "-o", "ring.tubes.step", folder=folder)
+    ring, = read_solids(reader, folder / "ring.tubes.step")
+    check_tube(ring, 1.0, 2 * math.pi * radius, 0, check, "ring.tubes.step")
+
+    e.run(command, "relax", e.ROOT / "examples/structures/rib.verm", "--periodic", "-o", "rib_cell.h5", folder=folder)
+    numbers = e.measured(command, "rib_cell.h5", folder)
+    e.run(command, "export", "rib_cell.h5", "--repeats", "2x2", "-o", "cell.tubes.step", folder=folder)
+    cells = read_solids(reader, folder / "cell.tubes.step")
+    check.holds(len(cells) == 4, "cell.tubes.step: a solid a cell")
+    check_tube(cells[3], 0.37, numbers["loop_length_mm"] * numbers["loops"], 2, check, "cell.tubes.step")
+
+
 def csv_lines(path):
     """Places of every yarn, in order."""
     lines = {}
@@ -68,6 +123,7 @@ def main():
                 worst = max(worst, math.dist(place, line[k * segments]))  # k / STEPS of all segments
         # the table has nine digits
         check.holds(worst < 1e-6, f"rib.step: places within {worst:.2g} mm of the yarns' own")
+        check_solids(command, reader, Path(folder), check)
     check.exit()
 
 

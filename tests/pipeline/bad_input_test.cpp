@@ -163,7 +163,11 @@ TEST(BadInput, CommandLine) {
 
 TEST(Command, SaysItsVersionAndHelp) {
   const TemporaryFolder folder;
-  EXPECT_THAT(run_command({"version"}, folder).out, ContainsRegex("^loopwright [0-9]+\\.[0-9]+\\.[0-9]+\n$"));
+  const std::string said = run_command({"version"}, folder).out;
+  EXPECT_THAT(said, ContainsRegex("^loopwright [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+  for (const char* fact : {"\ncommit: ", "\ncompiler: ", "\nbuild type: ", "\nlibraries: Eigen 3.", "HDF5 1.",
+                           "\nnumbers: double (64 bits)", "\nthreads: ", "\nlicence of this binary: "})
+    EXPECT_THAT(said, HasSubstr(fact));
   EXPECT_EQ(run_command({"--version"}, folder).out, run_command({"version"}, folder).out);
   const CommandOutcome help = run_command({"--help"}, folder);
   EXPECT_EQ(help.status, 0);

@@ -94,8 +94,9 @@ TEST(ExportCommand, says_what_it_cannot_do_and_leaves_nothing) {
   fault({"export", plain, "-o", "a.xyz"}, "known are .tubes.obj .obj");
   fault({"export", plain, "--format", "iges", "-o", "a.igs"},
         "there is no format 'iges'; there are obj-tubes");
-  fault({"export", plain, "--repeats", "2x2", "-o", "a.obj"}, "--repeats is for a periodic cell");
+  fault({"export", plain, "--repeats", "2x2", "-o", "a.obj"}, "repeats are for a periodic cell");
   fault({"export", plain, "--repeats", "2", "-o", "a.obj"}, "COLUMNSxROWS");
+  fault({"export", plain, "--repeats", "0x2", "-o", "a.obj"}, "COLUMNSxROWS");
   fault({"export", plain, "-o", "nowhere/a.obj"}, "nowhere");
   EXPECT_TRUE(folder.names().empty());
   folder.write("tubes.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");

@@ -69,18 +69,26 @@ class BeamWriter {
            << ", 0, 0), a2 = (" << real(mm(fabric_.skew)) << ", " << real(mm(fabric_.height)) << ", 0)\n";
   }
 
+  // In one block: some readers (meshio 5) keep only the last one.
   void put_nodes() {
-    out_ << "*NODE, NSET=NODES\n";
+    out_ << "*NODE\n";
     for (std::size_t c = 0; c < model_.chains.size(); ++c)
-      for (std::size_t k = 0; k < model_.chains[c].places.size(); ++k) {
-        const Vec3 p = model_.chains[c].places[k] * fabric_.diameter_mm;
-        out_ << first_node_[c] + k << ", " << real(p.x) << ", " << real(p.y) << ", " << real(p.z) << '\n';
-      }
+      for (std::size_t k = 0; k < model_.chains[c].places.size(); ++k)
+        put_node(first_node_[c] + k, model_.chains[c].places[k]);
+    if (!model_.cuts.empty()) {
+      // beside the cell, so that they are found in a picture
+      put_node(last_node_ + 1, fabric_.lattice(1, 0));
+      put_node(last_node_ + 2, fabric_.lattice(0, 1));
+    }
+    out_ << "*NSET, NSET=NODES, GENERATE\n1, " << last_node_ << ", 1\n";
     if (model_.cuts.empty()) return;
-    // beside the cell, so that they are found in a picture
-    out_ << "*NODE, NSET=CELL_X\n" << last_node_ + 1 << ", " << real(mm(fabric_.width)) << ", 0., 0.\n";
-    out_ << "*NODE, NSET=CELL_Y\n"
-         << last_node_ + 2 << ", " << real(mm(fabric_.skew)) << ", " << real(mm(fabric_.height)) << ", 0.\n";
+    put_set("CELL_X", {last_node_ + 1});
+    put_set("CELL_Y", {last_node_ + 2});
+  }
+
+  void put_node(std::size_t number, const Vec3& place) {
+    const Vec3 p = place * fabric_.diameter_mm;
+    out_ << number << ", " << real(p.x) << ", " << real(p.y) << ", " << real(p.z) << '\n';
   }
 
   void put_elements() {

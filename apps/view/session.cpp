@@ -1,0 +1,255 @@
+#include "session.hpp"
+
+#include <QMetaObject>
+#include <algorithm>
+#include <chrono>
+
+#include "notation/write_vermiculation.hpp"
+
+namespace loopwright {
+namespace {
+
+// Read at once, in the thread of the window, up to this size; beyond it the worker's reading must do.
+constexpr std::size_t most_bytes_read_at_once = 300'000;
+
+double now_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+Session::Session(QObject* parent) : QObject(parent) {
+  document_.on_change = [this](const Document::Change& change) {
+    emit text_changed(static_cast<qsizetype>(change.begin), static_cast<qsizetype>(change.removed),
+                      static_cast<qsizetype>(change.inserted), change.whole);
+    if (change.whole) {
+      fabric_ = nullptr;
+      diagram_ = {};
+      selection_ = {};
+      moment_ = {};
+      emit fabric_changed();
+      emit selection_changed();
+    }
+    read_text();
+    if (automatic_ || change.whole) make_cloth_anew();
+  };
+}
+
+Session::~Session() { worker_.cancel(); }
+
+double Session::working_seconds() const { return working_ ? now_s() - working_since_ : 0; }
+
+void Session::read_text() {
+  diagnostics_ = Diagnostics(document_.name());
+  notation_ = nullptr;
+  diagram_is_current_ = false;
+  const std::string& text = document_.text();
+  if (document_.kind() == DocumentKind::fabric && text.size() < most_bytes_read_at_once) {
+    const auto notation = std::make_shared<const Vermiculation>(parse_vermiculation(text, diagnostics_));
+    if (diagnostics_.ok()) {
+      notation_ = notation;
+      try {
+        diagram_ = needle_diagram(*notation);
+        diagram_is_current_ = true;
+      } catch (const std::invalid_argument&) {
+        diagram_ = {};  // too large for a drawing: the text remains
+      }
+    }
+  }
+  emit reading_changed();
+}
+
+void Session::choose_piece(PieceChoice piece) {
+  if (piece == piece_) return;
+  piece_ = piece;
+  make_cloth_anew();
+}
+
+void Session::set_automatic(bool automatic) {
+  automatic_ = automatic;
+  if (automatic && !fabric_is_current_) make_cloth_anew();
+}
+
+void Session::make_cloth_anew() { start_cloth(ClothRequest().most_loops); }
+
+void Session::relax_whole() { start_cloth(static_cast<std::size_t>(-1)); }
+
+void Session::start_cloth(std::size_t most_loops) {
+  ClothRequest request;
+  request.text = document_.text();
+  request.suffix = document_.suffix();
+  request.name = document_.name();
+  request.piece = piece_;
+  request.most_loops = most_loops;
+  const int serial = ++serial_;
+  stretch_ = nullptr;
+  stretch_points_.clear();
+  fabric_is_current_ = false;
+  working_ = true;
+  working_since_ = now_s();
+  emit stretch_changed();
+  emit moment_changed();
+  worker_.start([this, serial, request = std::move(request)](const std::atomic<bool>& cancelled) {
+    make_cloth(request, cancelled, [this, serial](ClothMoment moment) {
+      QMetaObject::invokeMethod(
+          this, [this, serial, moment = std::move(moment)] { take_moment(serial, moment); },
+          Qt::QueuedConnection);
+    });
+    QMetaObject::invokeMethod(
+        this,
+        [this, serial] {
+          if (serial != serial_) return;
+          working_ = false;
+          emit moment_changed();
+        },
+        Qt::QueuedConnection);
+  });
+}
+
+void Session::take_moment(int serial, ClothMoment moment) {
+  if (serial != serial_) return;  // of a text that is no more
+  const bool fresh = moment.fabric && moment.fabric != moment_.fabric;
+  if (moment.diagnostics && moment.diagnostics != moment_.diagnostics) {
+    diagnostics_ = *moment.diagnostics;
+    if (moment.stage == ClothStage::unusable && diagnostics_.ok()) diagnostics_.error({}, moment.message);
+    if (document_.kind() == DocumentKind::knitout && moment.knitting) {
+      try {
+        diagram_ = needle_diagram(moment.knitting->program, {0, 0, 0, 400});
+        diagram_is_current_ = true;
+      } catch (const std::invalid_argument&) {
+        diagram_ = {};
+      }
+    }
+    moment_ = moment;
+    emit reading_changed();
+  } else if (moment.stage == ClothStage::unusable && diagnostics_.ok()) {
+    diagnostics_.error({}, moment.message);
+    emit reading_changed();
+  }
+  moment_ = std::move(moment);
+  if (fresh) {
+    fabric_ = moment_.fabric;
+    fabric_is_current_ = true;
+    if (selection_.at.line > 0) {
+      const std::vector<int> spans = spans_at(selection_.at);
+      if (selection_.span >= static_cast<int>(fabric_->loops.size()) ||
+          std::find(spans.begin(), spans.end(), selection_.span) == spans.end())
+        selection_.span = spans.empty() ? -1 : spans.front();
+    }
+    emit fabric_changed();
+  }
+  emit moment_changed();
+}
+
+void Session::cancel() { worker_.cancel(); }
+
+bool Session::edit_notation(const QString& what, const std::function<std::string(Vermiculation&)>& edit) {
+  if (document_.read_only()) {
+    emit refused(tr("A knitout file is shown as it is; write a fabric file to change it."));
+    return false;
+  }
+  if (!notation_) {
+    emit refused(tr("The text has errors: mend them first, then the diagram can be changed."));
+    return false;
+  }
+  Vermiculation changed = *notation_;
+  const std::string problem = edit(changed);
+  if (!problem.empty()) {
+    emit refused(QString::fromStdString(problem));
+    return false;
+  }
+  change_text(write_vermiculation(changed), what);
+  return true;
+}
+
+void Session::change_text(const std::string& text, const QString& what, bool joined) {
+  document_.change_to(text, what.toStdString(), joined);
+}
+
+void Session::undo() { document_.undo(); }
+void Session::redo() { document_.redo(); }
+
+std::vector<int> Session::spans_at(SourceLocation at) const {
+  std::vector<int> found;
+  if (!fabric_ || at.line == 0) return found;
+  for (std::size_t i = 0; i < fabric_->loops.size(); ++i)
+    if (fabric_->loops[i].at == at) found.push_back(static_cast<int>(i));
+  return found;
+}
+
+void Session::select(Selection selection) {
+  selection_ = selection;
+  emit selection_changed();
+}
+
+void Session::select_at(SourceLocation at) {
+  const std::vector<int> spans = spans_at(at);
+  select({at, spans.empty() ? -1 : spans.front()});
+}
+
+void Session::stretch_to(StretchDirection direction, double strain) {
+  if (!moment_.relaxed || !moment_.options) return;
+  try {
+    if (!stretch_ || stretch_->direction() != direction) {
+      stretch_ = std::make_shared<StretchSession>(*moment_.relaxed, *moment_.options, direction);
+      stretch_points_ = {stretch_->point()};
+    }
+  } catch (const std::invalid_argument& fault) {
+    emit refused(QString::fromUtf8(fault.what()));
+    return;
+  }
+  const int serial = ++serial_;
+  working_ = true;
+  working_since_ = now_s();
+  worker_.start([this, serial, strain, session = stretch_](const std::atomic<bool>& cancelled) {
+    session->options().on_progress = [&](const RelaxProgress&) { return !cancelled; };
+    try {
+      session->go_to(strain, [&](const StretchPoint& point) {
+        const auto cloth = std::make_shared<const Fabric>(session->reached().fabric);
+        const bool stopped = session->reached().stopped;
+        QMetaObject::invokeMethod(
+            this,
+            [this, serial, point, cloth, stopped] {
+              if (serial != serial_ || stopped) return;
+              fabric_ = cloth;
+              moment_.interlacings.expected = point.interlacings;
+              moment_.interlacings.intact = point.interlacings_intact;
+              stretch_points_.push_back(point);
+              emit stretch_changed();
+              emit fabric_changed();
+              emit moment_changed();
+            },
+            Qt::QueuedConnection);
+        return !cancelled;
+      });
+    } catch (const std::exception& fault) {
+      const QString why = QString::fromUtf8(fault.what());
+      QMetaObject::invokeMethod(
+          this, [this, why] { emit refused(why); }, Qt::QueuedConnection);
+    }
+    QMetaObject::invokeMethod(
+        this,
+        [this, serial] {
+          if (serial != serial_) return;
+          working_ = false;
+          emit moment_changed();
+        },
+        Qt::QueuedConnection);
+  });
+}
+
+void Session::forget_stretch() {
+  if (!stretch_ || !moment_.relaxed) return;
+  ++serial_;
+  worker_.cancel();
+  working_ = false;
+  stretch_ = nullptr;
+  stretch_points_.clear();
+  fabric_ = moment_.fabric;
+  if (fabric_) moment_.interlacings = check_interlacings(*fabric_);
+  emit fabric_changed();
+  emit stretch_changed();
+  emit moment_changed();
+}
+
+}  // namespace loopwright

@@ -1,0 +1,99 @@
+// What all parts of the window share: the document, the cloth that follows it, and what is chosen. Views talk
+// to the session, never to each other.
+#pragma once
+#include <QObject>
+#include <optional>
+
+#include "cloth_colours.hpp"
+#include "cloth_job.hpp"
+#include "document.hpp"
+#include "latest_only.hpp"
+#include "notation/needle_diagram.hpp"
+#include "stretch_session.hpp"
+
+namespace loopwright {
+
+// A loop that was clicked in some view. Others of the same letter (repeats) are its kin.
+struct Selection {
+  SourceLocation at;  // its letter or instruction; line 0: nothing is chosen
+  int span = -1;      // index into the shown fabric's loops; -1: only its letter is known
+};
+
+class Session : public QObject {
+  Q_OBJECT
+ public:
+  explicit Session(QObject* parent = nullptr);
+  ~Session() override;
+
+  Document& document() { return document_; }
+  const ClothMoment& moment() const { return moment_; }
+  // The cloth that is shown: the last good one, while a new one is made or where the text has errors.
+  const std::shared_ptr<const Fabric>& fabric() const { return fabric_; }
+  bool fabric_is_current() const { return fabric_is_current_; }
+  const NeedleDiagram& diagram() const { return diagram_; }
+  bool diagram_is_current() const { return diagram_is_current_; }
+  const std::shared_ptr<const Vermiculation>& notation() const { return notation_; }
+  // Of the text as it is: of the notation at once, of machine and geometry when they have been asked.
+  const Diagnostics& diagnostics() const { return diagnostics_; }
+  const Selection& selection() const { return selection_; }
+  bool working() const { return working_; }
+  double working_seconds() const;
+
+  PieceChoice piece_choice() const { return piece_; }
+  void choose_piece(PieceChoice piece);
+  void set_automatic(bool automatic);  // relax after every edit
+  bool automatic() const { return automatic_; }
+
+  // Changes the notation by a function that answers why it cannot (empty: done); true if it was done. One
+  // step of the history.
+  bool edit_notation(const QString& what, const std::function<std::string(Vermiculation&)>& edit);
+  void change_text(const std::string& text, const QString& what, bool joined = false);
+
+  void select(Selection selection);
+  void select_at(SourceLocation at);  // the first loop of a letter
+  // Spans of the shown fabric that the letter made.
+  std::vector<int> spans_at(SourceLocation at) const;
+
+  // Pulls the cloth at rest to a strain of its size (in the worker); the cloth follows.
+  void stretch_to(StretchDirection direction, double strain);
+  const std::vector<StretchPoint>& stretch_points() const { return stretch_points_; }
+  void forget_stretch();  // shows the cloth at rest again
+
+ public slots:
+  void make_cloth_anew();  // as the choice of piece says, live limits respected
+  void relax_whole();      // whatever its size
+  void cancel();
+  void undo();
+  void redo();
+
+ signals:
+  void text_changed(qsizetype begin, qsizetype removed, qsizetype inserted, bool whole);
+  void reading_changed();  // notation, diagram, diagnostics
+  void moment_changed();   // stage, numbers, and perhaps the fabric
+  void fabric_changed();
+  void selection_changed();
+  void stretch_changed();
+  void refused(const QString& why);  // an edit that cannot be
+
+ private:
+  void read_text();
+  void start_cloth(std::size_t most_loops);
+  void take_moment(int serial, ClothMoment moment);
+
+  Document document_;
+  std::shared_ptr<const Vermiculation> notation_;
+  NeedleDiagram diagram_;
+  bool diagram_is_current_ = false, fabric_is_current_ = false, automatic_ = true, working_ = false;
+  Diagnostics diagnostics_;
+  Selection selection_;
+  PieceChoice piece_ = PieceChoice::automatic;
+  ClothMoment moment_;
+  std::shared_ptr<const Fabric> fabric_;
+  std::vector<StretchPoint> stretch_points_;
+  std::shared_ptr<StretchSession> stretch_;
+  int serial_ = 0;  // of the work whose moments count
+  double working_since_ = 0;
+  LatestOnly worker_;  // last: its thread uses the rest
+};
+
+}  // namespace loopwright

@@ -1,0 +1,447 @@
+// The real window, driven as a person would: it opens, is typed in, clicked, dragged, and writes its
+// pictures. Needs a display (Xvfb will do).
+#pragma once
+#include <QApplication>
+#include <QCursor>
+#include <QDoubleSpinBox>
+#include <QElapsedTimer>
+#include <QFile>
+#include <QLabel>
+#include <QLineEdit>
+#include <QMouseEvent>
+#include <QScreen>
+#include <QSettings>
+#include <QSlider>
+#include <QStandardPaths>
+#include <QSurfaceFormat>
+#include <QTemporaryDir>
+#include <QTest>
+#include <QTreeWidget>
+#include <cmath>
+#include <memory>
+
+#include "../main_window.hpp"
+#include "../plot_widget.hpp"
+#include "outputs/render.hpp"
+
+namespace loopwright {
+
+inline constexpr const char* rib = R"(;!vermiculation-1
+;;Name: a rib
+;;Gauge: 12
+;;Bed-Gap: 2 mm
+;;Yarn-A: wool 2/28 Nm            ; the usual one
+;;Loop-Length: 5.9 mm
+;;Size: 8 wales x 8 courses
+;;Edges: held
+; two wales, two courses
+ge   ; first
+ge   ; second
+)";
+
+// Where pictures for people go; empty: none are kept.
+inline QString pictures_folder() { return qEnvironmentVariable("LOOPWRIGHT_VIEW_PICTURES"); }
+
+// Share of pixels that differ by more than `by` in some channel.
+inline double difference(const QImage& a, const QImage& b, int by) {
+  if (a.size() != b.size()) return 1;
+  std::size_t apart = 0;
+  for (int y = 0; y < a.height(); ++y)
+    for (int x = 0; x < a.width(); ++x) {
+      const QRgb p = a.pixel(x, y), q = b.pixel(x, y);
+      if (std::abs(qRed(p) - qRed(q)) > by || std::abs(qGreen(p) - qGreen(q)) > by ||
+          std::abs(qBlue(p) - qBlue(q)) > by)
+        ++apart;
+    }
+  return static_cast<double>(apart) / (static_cast<double>(a.width()) * a.height());
+}
+
+class WindowTest : public QObject {
+  Q_OBJECT
+
+  std::unique_ptr<QTemporaryDir> folder_;
+  std::unique_ptr<MainWindow> window_;
+
+  QString file(const char* name, const char* text) const {
+    const QString path = folder_->filePath(QLatin1String(name));
+    QFile out(path);
+    if (out.open(QIODevice::WriteOnly)) out.write(text);
+    return path;
+  }
+  ClothStage stage() const { return window_->session().moment().stage; }
+  bool at_rest() const {
+    return !window_->session().working() && stage() == ClothStage::at_rest &&
+           window_->cloth().scene_is_current();
+  }
+  void open_rib() {
+    QVERIFY(window_->open(file("rib.verm", rib)));
+    QTRY_VERIFY_WITH_TIMEOUT(at_rest(), 20000);
+  }
+  QString text() const { return QString::fromStdString(window_->session().document().text()); }
+  // Pictures of the whole window, those of large screens at a size that a page can hold.
+  void keep_picture(const char* name) {
+    if (pictures_folder().isEmpty()) return;
+    QImage picture = window_->screen()->grabWindow(window_->winId()).toImage();
+    if (picture.width() > 1600) picture = picture.scaledToWidth(1600, Qt::SmoothTransformation);
+    picture.save(pictures_folder() + QLatin1Char('/') + QLatin1String(name));
+  }
+
+ private slots:
+  void initTestCase() {
+    QStandardPaths::setTestModeEnabled(true);
+    QSettings::setDefaultFormat(QSettings::IniFormat);
+  }
+
+  void init() {
+    folder_ = std::make_unique<QTemporaryDir>();
+    QSettings::setPath(QSettings::IniFormat, QSettings::UserScope, folder_->path());
+    window_ = std::make_unique<MainWindow>(folder_->filePath(QStringLiteral("autosave")));
+    window_->resize(1280, 800);
+    window_->show();
+    QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
+    connect(&window_->session(), &Session::refused, this,
+            [](const QString& why) { qInfo("refused: %s", qPrintable(why)); });
+    // without a window manager nobody else makes it the one that gets the keys
+    QApplication::setActiveWindow(window_.get());
+  }
+
+  void cleanup() {
+    window_.reset();
+    folder_.reset();
+  }
+
+  void opens_and_relaxes() {
+    QElapsedTimer clock;
+    clock.start();
+    QVERIFY(window_->open(file("rib.verm", rib)));
+    QVERIFY2(clock.elapsed() < 1000, "opening must not wait for the cloth");
+    QTRY_VERIFY_WITH_TIMEOUT(at_rest(), 20000);
+    QCOMPARE(window_->interlacings_text(), QStringLiteral("interlacings 4 of 4"));
+    QVERIFY(window_->windowTitle().contains(QStringLiteral("rib.verm")));
+    QTest::qWait(300);
+    keep_picture("window.png");
+  }
+
+  void typing_changes_diagram_and_cloth() {
+    open_rib();
+    const std::size_t loops = window_->session().fabric()->loops.size();
+    NotationEditor& editor = window_->editor();
+    editor.go_to({10, 3});
+    QTest::keyClicks(&editor, QStringLiteral("g"));
+    QVERIFY(text().contains(QStringLiteral("geg   ; first")));
+    QCOMPARE(window_->session().diagram().repeat_wales, 6);
+    QTRY_VERIFY_WITH_TIMEOUT(at_rest() && window_->session().fabric()->loops.size() == 3 * loops, 30000);
+    QCOMPARE(window_->interlacings_text(), QStringLiteral("interlacings 12 of 12"));
+    // one history for all: the window's undo takes the typing back
+    QTest::keyClick(&editor, Qt::Key_Z, Qt::ControlModifier);
+    QTRY_COMPARE(text(), QString::fromUtf8(rib));
+    QCOMPARE(editor.toPlainText(), QString::fromUtf8(rib));
+  }
+
+  void click_in_diagram_changes_one_letter() {
+    open_rib();
+    DiagramView& diagram = window_->diagram();
+    diagram.set_tool(DiagramTool::stitch);
+    // the rear needle of the first wale, first course
+    QTest::mouseClick(diagram.viewport(), Qt::LeftButton, {}, diagram.needle_place(0, true, 0).toPoint());
+    QString wanted = QString::fromUtf8(rib);
+    wanted.replace(QStringLiteral("ge   ; first"), QStringLiteral("ee   ; first"));
+    QCOMPARE(text(), wanted);
+    QCOMPARE(window_->editor().toPlainText(), wanted);
+    QTRY_VERIFY_WITH_TIMEOUT(at_rest(), 20000);
+    QCOMPARE(window_->interlacings_text(), QStringLiteral("interlacings 4 of 4"));
+    window_->session().undo();
+    QCOMPARE(text(), QString::fromUtf8(rib));
+  }
+
+  void diagram_is_worked_by_keys() {
+    open_rib();
+    DiagramView& diagram = window_->diagram();
+    diagram.setFocus();
+    QTest::keyClick(&diagram, Qt::Key_Right);
+    QTest::keyClick(&diagram, Qt::Key_V);
+    QVERIFY2(text().contains(QStringLiteral("gv   ; first")), qPrintable(text()));
+    QTest::keyClick(&diagram, Qt::Key_Insert);
+    QVERIFY2(window_->session().diagram().courses == 3, qPrintable(text()));
+    QTest::keyClick(&diagram, Qt::Key_Insert, Qt::ShiftModifier);
+    QCOMPARE(window_->session().diagram().repeat_wales, 3);
+  }
+
+  void an_error_keeps_the_last_good_cloth() {
+    open_rib();
+    const auto cloth = window_->session().fabric();
+    NotationEditor& editor = window_->editor();
+    editor.go_to({10, 3});
+    QTest::keyClicks(&editor, QStringLiteral("q"));
+    auto* messages = window_->findChild<QTreeWidget*>(QStringLiteral("messages"));
+    QCOMPARE(messages->topLevelItemCount(), 1);
+    QCOMPARE(messages->topLevelItem(0)->text(0), QStringLiteral("10"));
+    QTRY_COMPARE(stage(), ClothStage::unusable);
+    QCOMPARE(window_->session().fabric(), cloth);
+    QVERIFY(!window_->session().fabric_is_current());
+    QVERIFY(!editor.extraSelections().isEmpty());
+    QTest::qWait(200);
+    keep_picture("error.png");
+    QTest::keyClick(&editor, Qt::Key_Backspace);
+    QCOMPARE(messages->topLevelItemCount(), 0);
+    QTRY_VERIFY_WITH_TIMEOUT(at_rest(), 20000);
+    QVERIFY(window_->session().fabric_is_current());
+  }
+
+  void click_on_a_loop_marks_it_everywhere() {
+    open_rib();
+    ClothView& cloth = window_->cloth();
+    const Fabric& fabric = *window_->session().fabric();
+    // a front stitch, where its yarn crosses the top of its head
+    std::size_t chosen = 0;
+    while (fabric.loops[chosen].side != StitchSide::front) ++chosen;
+    const LoopSpan& span = fabric.loops[chosen];
+    const Vec3 head = position(fabric, fabric.yarns[static_cast<std::size_t>(span.yarn)], span.apex);
+    const QPoint at = cloth.on_screen(head + fabric.lattice(1, 1)).toPoint();
+    QTest::mouseClick(&cloth, Qt::LeftButton, {}, at);
+    const Selection& selection = window_->session().selection();
+    QVERIFY(selection.span >= 0);
+    QVERIFY(selection.at.line == 10 || selection.at.line == 11);
+    QVERIFY(!window_->editor().extraSelections().isEmpty());
+    QCOMPARE(window_->editor().textCursor().blockNumber() + 1, selection.at.line);
+    QTRY_VERIFY(cloth.scene_is_current());
+    QTest::qWait(300);
+    keep_picture("selection.png");
+  }
+
+  void a_pulled_edge_stretches_the_cloth() {
+    open_rib();
+    ClothView& cloth = window_->cloth();
+    const double width = window_->session().fabric()->width;
+    Vec3 right;
+    for (const FabricYarn& yarn : window_->session().fabric()->yarns)
+      for (const Vec3& p : yarn.control_points)
+        if (p.x > right.x) right = p;
+    const QPoint from = cloth.on_screen(right + window_->session().fabric()->lattice(3, 1)).toPoint();
+    QTest::mousePress(&cloth, Qt::LeftButton, {}, from);
+    QTest::mouseMove(&cloth, from + QPoint(10, 0));
+    QTest::mouseMove(&cloth, from + QPoint(25, 0));
+    QTest::mouseRelease(&cloth, Qt::LeftButton, {}, from + QPoint(25, 0));
+    QTRY_VERIFY_WITH_TIMEOUT(!window_->session().working(), 30000);
+    QVERIFY(!window_->session().stretch_points().empty());
+    QVERIFY(window_->session().fabric()->width > 1.02 * width);
+    const StretchPoint& last = window_->session().stretch_points().back();
+    QVERIFY(last.course_force > 0);
+    QCOMPARE(last.interlacings_intact, last.interlacings);
+    QCOMPARE(window_->stretch().plot()->plot().curves.front().x.size(),
+             window_->session().stretch_points().size());
+    QTest::qWait(300);
+    keep_picture("stretch.png");
+    const QString csv = folder_->filePath(QStringLiteral("curve.csv"));
+    window_->stretch().write_curve(csv);
+    QVERIFY(QFile(csv).size() > 50);
+    window_->session().forget_stretch();
+    QCOMPARE(window_->session().fabric()->width, width);
+  }
+
+  void a_pulled_binding_point_comes_back() {
+    open_rib();
+    ClothView& cloth = window_->cloth();
+    cloth.set_style(ClothStyle::structure);
+    QTRY_VERIFY_WITH_TIMEOUT(cloth.motion() != nullptr, 20000);
+    const auto at_rest_now = [&] { return cloth.motion()->force() < 1e-4 && cloth.motion()->speed() < 1e-4; };
+    QTRY_VERIFY_WITH_TIMEOUT(at_rest_now(), 30000);
+    cloth.fit();
+    const std::size_t middle = cloth.motion()->state().size() / 2;
+    const Vec3 before = cloth.motion()->state().position(middle);
+    const QPoint from = cloth.on_screen(before).toPoint();
+    QTest::mousePress(&cloth, Qt::LeftButton, {}, from);
+    QVERIFY(cloth.motion()->grabbed());
+    QTest::mouseMove(&cloth, from + QPoint(20, 30));
+    QTest::mouseMove(&cloth, from + QPoint(40, 60));
+    QTest::qWait(400);
+    keep_picture("structure.png");
+    QTest::mouseRelease(&cloth, Qt::LeftButton, {}, from + QPoint(40, 60));
+    QVERIFY(!cloth.motion()->grabbed());
+    QTRY_VERIFY_WITH_TIMEOUT(at_rest_now(), 60000);
+  }
+
+  void knitout_is_shown_and_not_edited() {
+    QVERIFY(window_->open(QStringLiteral(LOOPWRIGHT_SOURCE_DIR "/examples/swatch.k")));
+    QTRY_VERIFY_WITH_TIMEOUT(window_->session().fabric() != nullptr, 30000);
+    QVERIFY(window_->editor().isReadOnly());
+    QVERIFY(!window_->session().diagram().passes.empty());
+    auto* slider = window_->findChild<QSlider*>(QStringLiteral("passes"));
+    slider->setValue(2);
+    const SourceLocation at = window_->session().diagram().passes[1].at;
+    QCOMPARE(window_->editor().textCursor().blockNumber() + 1, at.line);
+    const std::string before = window_->session().document().text();
+    DiagramView& diagram = window_->diagram();
+    diagram.set_tool(DiagramTool::tuck);
+    QTest::mouseClick(diagram.viewport(), Qt::LeftButton, {}, diagram.needle_place(0, false, 0).toPoint());
+    QCOMPARE(window_->session().document().text(), before);
+    window_->session().cancel();
+  }
+
+  void picture_is_that_of_the_command() {
+    open_rib();
+    ClothView& cloth = window_->cloth();
+    cloth.set_floor(false);
+    QTest::qWait(400);  // shadows come back
+    const QSize size(640, 480);
+    const QImage own = cloth.picture(size);
+    RenderOptions options;
+    options.width = size.width(), options.height = size.height();
+    options.repeats = {4, 4};
+    options.look.fuzz = 0;
+    options.style.table = false;
+    Image drawn;
+    try {
+      drawn = render(*window_->session().fabric(), cloth.camera(), options);
+    } catch (const NoOpenGl& missing) {
+      QSKIP(missing.what());
+    }
+    const QImage other(drawn.pixels.data(), drawn.width, drawn.height, QImage::Format_RGBA8888);
+    const double apart = difference(own, other.convertToFormat(QImage::Format_RGB32), 48);
+    QVERIFY2(apart < 0.02, qPrintable(QString::number(apart)));
+    // and the cloth is there at all
+    QImage empty(size, QImage::Format_RGB32);
+    empty.fill(QColor(246, 245, 242));
+    QVERIFY(difference(own, empty, 48) > 0.1);
+  }
+
+  void exports_and_saves() {
+    open_rib();
+    for (const char* name : {"a.png", "a.svg", "a.json", "a.h5", "a.obj"}) {
+      window_->export_to(folder_->filePath(QLatin1String(name)));
+      QVERIFY2(QFile(folder_->filePath(QLatin1String(name))).size() > 100, name);
+    }
+    const QString copy = folder_->filePath(QStringLiteral("copy.verm"));
+    QVERIFY(window_->save_to(copy));
+    QFile saved(copy);
+    QVERIFY(saved.open(QIODevice::ReadOnly));
+    QCOMPARE(saved.readAll(), QByteArray(rib));
+  }
+
+  void unsaved_text_is_found_again() {
+    open_rib();
+    window_->editor().go_to({10, 3});
+    QTest::keyClicks(&window_->editor(), QStringLiteral("e"));
+    const QString kept =
+        folder_->filePath(QStringLiteral("autosave/unsaved-%1").arg(QCoreApplication::applicationPid()));
+    QTRY_VERIFY_WITH_TIMEOUT(QFile::exists(kept), 5000);
+    // as a program that was killed would have left it
+    QVERIFY(QFile::copy(kept, folder_->filePath(QStringLiteral("autosave/unsaved-999999999"))));
+    const Autosave other(folder_->filePath(QStringLiteral("autosave")));
+    const auto left = other.left_behind();
+    QVERIFY(left.has_value());
+    QVERIFY(left->text.find("gee   ; first") != std::string::npos);
+    Autosave::discard(*left);
+    QVERIFY(!other.left_behind().has_value());
+    window_->session().document().save(window_->session().document().path());
+  }
+
+  void a_yarn_and_a_length_are_changed_in_their_panels() {
+    open_rib();
+    auto* length = window_->findChild<QDoubleSpinBox*>(QStringLiteral("Loop-Length"));
+    QCOMPARE(length->value(), 5.9);
+    length->setValue(6.5);
+    QVERIFY(text().contains(QStringLiteral(";;Loop-Length: 6.5 mm\n")));
+    auto* yarn = window_->findChild<QLineEdit*>(QStringLiteral("yarn A"));
+    yarn->setText(QStringLiteral("wool 2/28 Nm colour=#b03020"));
+    emit yarn->editingFinished();
+    QVERIFY(
+        text().contains(QStringLiteral(";;Yarn-A: wool 2/28 Nm colour=#b03020            ; the usual one")));
+    yarn->setText(QStringLiteral("wool 2/28 Nm diameter=-3mm"));
+    const QString before = text();
+    emit yarn->editingFinished();
+    QCOMPARE(text(), before);  // refused, and said
+    QTRY_VERIFY_WITH_TIMEOUT(at_rest(), 20000);
+  }
+
+  void views_styles_and_colours() {
+    open_rib();
+    ClothView& cloth = window_->cloth();
+    QImage last = cloth.picture({320, 240});
+    for (const View view : {View::left, View::top, View::corner}) {
+      cloth.set_view(view);
+      QTRY_VERIFY(cloth.scene_is_current());
+      const QImage now = cloth.picture({320, 240});
+      QVERIFY(difference(now, last, 30) > 0.02);
+      last = now;
+    }
+    for (const ColourBy by :
+         {ColourBy::tension, ColourBy::curvature, ColourBy::contact, ColourBy::loop_kind}) {
+      cloth.set_colour_by(by);
+      QTRY_VERIFY_WITH_TIMEOUT(cloth.scene_is_current(), 10000);
+      const QImage now = cloth.picture({320, 240});
+      QVERIFY2(difference(now, last, 20) > 0.01, qPrintable(QString::number(static_cast<int>(by))));
+      last = now;
+    }
+    window_->resize(2560, 1440);
+    cloth.set_colour_by(ColourBy::tension);
+    QTest::qWait(1500);
+    keep_picture("large.png");
+    for (QAction* action : window_->findChildren<QAction*>())
+      if (action->text() == QStringLiteral("&Dark")) action->trigger();
+    const QImage dark = cloth.picture({320, 240});
+    QVERIFY(qGray(dark.pixel(2, 2)) < 80);
+    QTest::qWait(pictures_folder().isEmpty() ? 0 : 3000);
+    keep_picture("dark.png");
+    for (QAction* action : window_->findChildren<QAction*>())
+      if (action->text() == QStringLiteral("&Dark")) action->trigger();
+  }
+
+  // Figures for docs/view.md; none is asked for, as they belong to the machine.
+  void figures() {
+    const QString cell = QStringLiteral(
+        ";!vermiculation-1\n;;Gauge: 12\n;;Bed-Gap: 2 mm\n;;Yarn-A: wool 2/28 Nm\n"
+        ";;Loop-Length: 5.9 mm\n;;Size: 8 wales x 8 courses\n;;Edges: held\n"
+        "ggee\nggee\neegg\neegg\n");
+    int pictures = 0;
+    double first_s = 0;
+    QElapsedTimer clock;
+    clock.start();
+    {
+      MainWindow other(folder_->filePath(QStringLiteral("other")));
+      other.show();
+      QVERIFY(other.open(file("start.verm", rib)));
+      QTRY_VERIFY(other.cloth().frames_drawn() > 0 && other.session().fabric());
+      qInfo("window with a small file: %.3f s", static_cast<double>(clock.elapsed()) * 1e-3);
+    }
+    connect(&window_->session(), &Session::fabric_changed, this, [&] {
+      if (pictures++ == 0) first_s = static_cast<double>(clock.elapsed()) * 1e-3;
+    });
+    clock.start();
+    QVERIFY(window_->open(file("cell.verm", qPrintable(cell))));
+    QTRY_VERIFY_WITH_TIMEOUT(at_rest(), 60000);
+    pictures = 0;
+    clock.restart();
+    DiagramView& diagram = window_->diagram();
+    diagram.set_tool(DiagramTool::stitch);
+    // the first pass that is written; before it stand transfers that follow from it
+    std::size_t pass = 0;
+    while (window_->session().diagram().passes[pass].implied) ++pass;
+    QTest::mouseClick(diagram.viewport(), Qt::LeftButton, {}, diagram.needle_place(pass, true, 0).toPoint());
+    QTRY_VERIFY_WITH_TIMEOUT(at_rest(), 60000);
+    const double seconds = static_cast<double>(clock.elapsed()) * 1e-3;
+    QVERIFY2(pictures > 0, qPrintable(text()));
+    qInfo("4 x 4 repeat after an edit: first picture %.3f s, %d pictures in %.2f s, %.1f a second", first_s,
+          pictures, seconds, pictures / seconds);
+    ClothView& cloth = window_->cloth();
+    QTest::qWait(500);
+    QTest::mousePress(&cloth, Qt::RightButton, {}, {200, 200});
+    const int drawn = cloth.frames_drawn();
+    clock.restart();
+    for (int i = 0; clock.elapsed() < 2000; ++i) {
+      // Qt Test's moves carry no button, the window's own do
+      const QPointF at(200 + 4 * (i % 60), 200);
+      QMouseEvent move(QEvent::MouseMove, at, at, Qt::NoButton, Qt::RightButton, Qt::NoModifier);
+      QApplication::sendEvent(&cloth, &move);
+      QCoreApplication::processEvents();
+    }
+    const double turning = static_cast<double>(clock.elapsed()) * 1e-3;
+    const int frames = cloth.frames_drawn() - drawn;
+    QTest::mouseRelease(&cloth, Qt::RightButton, {}, {200, 200});
+    QVERIFY(frames > 0);
+    qInfo("turning: %.1f frames a second in %d x %d, the last took %.1f ms", frames / turning, cloth.width(),
+          cloth.height(), cloth.last_frame_ms());
+  }
+};
+
+}  // namespace loopwright

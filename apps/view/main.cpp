@@ -5,6 +5,7 @@
 #include <QStandardPaths>
 #include <QSurfaceFormat>
 #include <QTimer>
+#include <cstdlib>
 
 #include "main_window.hpp"
 
@@ -41,5 +42,12 @@ int main(int argc, char** argv) {
     settings.setValue(QStringLiteral("toured"), true);
     window.start_tour();
   });
-  return QApplication::exec();
+  const int status = QApplication::exec();
+  // The first geometry of a large piece cannot be stopped half-way; what it would make is wanted by nobody
+  // now.
+  if (window.session().working()) {
+    QSettings().sync();
+    std::_Exit(status);
+  }
+  return status;
 }

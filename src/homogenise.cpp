@@ -36,7 +36,7 @@ Pull pulled(const RelaxResult& rest, const RelaxOptions& options, StretchDirecti
 }
 
 // Cells with yarns that do not close along their courses have none.
-std::optional<CurlMoment> curl_moment_N(const Fabric& cell, const RelaxOptions& options) {
+std::optional<CurlMoment> moment_in_newtons(const Fabric& cell, const RelaxOptions& options) {
   const double unit =
       options.model.material.reference_bend_N_m2 / std::pow(cell.diameter_mm * 1e-3, 2);  // B/d^2 in N
   try {
@@ -134,7 +134,7 @@ Homogenised homogenise(const RelaxResult& rest, const Piece& piece, const Homoge
   all.stopped = stopped;
   all.whole = all.course.whole && all.wale.whole &&
               std::all_of(all.points.begin(), all.points.end(), [](const auto& p) { return is_whole(p); });
-  if (!stopped) all.curl = curl_moment_N(rest.fabric, options);
+  if (!stopped) all.curl = moment_in_newtons(rest.fabric, options);
   if (!stopped && all.points.size() >= 8) all.law = fit_membrane(all.points);
   return all;
 }

@@ -11,7 +11,7 @@ Cloth::Cloth(RelaxRun run) : linked_before_(std::move(run.linked_before)) {
   // ready to be gone on with: friction keeps its history, plates stand where they are
   piece_.options.grow_in = run.radius < 1;
   piece_.options.model.plates = result.plates;
-  piece_.options.history = result.history;
+  piece_.options.history = std::move(result.history);
   message_ = result.message;
   stopped_ = result.stopped;
   result.fabric = {};
@@ -33,6 +33,7 @@ std::optional<RelaxResult> Cloth::at_rest() const {
   if (!rest_ || stopped_) return std::nullopt;
   RelaxResult result = *rest_;
   result.fabric = fabric();
+  result.history = piece_.options.history;
   return result;
 }
 

@@ -31,7 +31,7 @@ class Cloth {
 
  private:
   Piece piece_;
-  std::optional<RelaxResult> rest_;  // without its fabric, which is the state's
+  std::optional<RelaxResult> rest_;  // without its fabric and history, which are the piece's
   std::vector<LinkedPair> linked_before_;
   std::string message_;
   bool stopped_ = false;

@@ -159,11 +159,16 @@ py::array render_to_array(const Cloth& cloth, const std::string& view, std::arra
   return pixels_of(picture(cloth, options, pixels_per_mm));
 }
 
-py::bytes png_of(const Cloth& cloth) {
+// What a notebook shows; None, so that it shows the line of words, where no picture can be drawn.
+py::object png_of(const Cloth& cloth) {
   RenderOptions options;
   options.width = 800, options.height = 600;
-  const std::vector<std::uint8_t> bytes = png_bytes(picture(cloth, options));
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+  try {
+    const std::vector<std::uint8_t> bytes = png_bytes(picture(cloth, options));
+    return py::bytes(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  } catch (const NoOpenGl&) {
+    return py::none();
+  }
 }
 
 void write_pixels(const std::filesystem::path& file,

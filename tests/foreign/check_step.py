@@ -28,23 +28,23 @@ def read_step(reader, path):
 
 
 def read_solids(reader, path):
-    """(sound, volume, surface, places on the side) of each."""
+    """(sound, volume, surface, volume of its mesh, places on the side) of each."""
     done = subprocess.run([reader, str(path)], text=True, stdout=subprocess.PIPE, check=True)
     solids = []
     for line in done.stdout.splitlines():
         if line.startswith("solid "):
             numbers = [float(word) for word in line.split()[1:]]
-            solids.append((numbers[0] == 1, numbers[1], numbers[2],
-                           [numbers[k:k + 3] for k in range(3, len(numbers), 3)]))
+            solids.append((numbers[0] == 1, *numbers[1:4], [numbers[k:k + 3] for k in range(4, len(numbers), 3)]))
     return solids
 
 
 def check_tube(solid, diameter, length, caps, check, name):
     """Pappus: volume and side of a tube are those of the straight one of its length."""
-    sound, volume, surface, _ = solid
+    sound, volume, surface, mesh, _ = solid
     check.holds(sound, name + ": OpenCASCADE finds a sound solid")
     check.near(volume, math.pi / 4 * diameter ** 2 * length, 1e-4, name + ": volume")
     check.near(surface, math.pi * diameter * length + caps * math.pi / 4 * diameter ** 2, 1e-4, name + ": surface")
+    check.near(mesh, volume, 0.04, name + ": volume of its mesh")
 
 
 def check_solids(command, reader, folder, check):
@@ -53,7 +53,7 @@ def check_solids(command, reader, folder, check):
     check_tube(helix, e.HELIX_DIAMETER, e.HELIX_LENGTH, 2, check, "helix.tubes.step")
     # every place is half a diameter from the helix: the nearest point of it, by Newton's method on its angle
     off = 0
-    for x, y, z in helix[3]:
+    for x, y, z in helix[4]:
         angle = 2 * math.pi * y / e.HELIX_RISE
         angle += math.remainder(math.atan2(z, x) - angle, 2 * math.pi)
         rise = e.HELIX_RISE / (2 * math.pi)

@@ -106,6 +106,8 @@ def test_pictures_are_the_same(rib, command, tmp_path):
     loopwright.write_png(tmp_path / "module.png", pixels)
     assert (tmp_path / "module.png").read_bytes() == (tmp_path / "command.png").read_bytes()
     assert len(np.unique(pixels.reshape(-1, 4), axis=0)) > 50
+    (tmp_path / "notebook.png").write_bytes(rib._repr_png_())
+    assert image.imread(tmp_path / "notebook.png").shape[:2] == (600, 800)
     assert (rib.render(size=(64, 64), transparent=True)[..., 3] == 0).any()
 
 

@@ -57,6 +57,7 @@ int StepWriter::curve(const std::string& name, const std::vector<int>& points, b
 int StepWriter::curve(const std::string& name, const std::vector<Vec3>& points, bool closed,
                       const Vec3& moved) {
   std::vector<int> numbers;
+  numbers.reserve(points.size());
   for (const Vec3& p : points) numbers.push_back(point(p + moved));
   return curve(name, numbers, closed);
 }

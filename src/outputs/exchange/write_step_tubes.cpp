@@ -1,5 +1,6 @@
 #include "outputs/exchange/write_step_tubes.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <string>
@@ -46,13 +47,13 @@ Vec3 end_slope(const Vec3* values, std::size_t count, std::ptrdiff_t step) {
   return at(1) - at(0);
 }
 
-// A yarn's tube as control points of C, N and B over the same clamped knots, in mm; r is in N and B.
+// A yarn's tube: control points of C, N and B as uniform cubics over the same knots, in mm; r is in N and B.
 struct TubeSpline {
   std::vector<Vec3> centre, normal, binormal;
-  struct End {
+  struct Ring {
     Vec3 centre, tangent, normal;  // mm, unit, unit
   };
-  End first, last;
+  std::vector<Ring> rings;  // at the knots
 };
 
 TubeSpline tube_spline(const Fabric& fabric, const FabricYarn& yarn, int per_segment) {
@@ -85,16 +86,14 @@ TubeSpline tube_spline(const Fabric& fabric, const FabricYarn& yarn, int per_seg
   tube.normal = through(normal);
   tube.binormal = through(binormal);
   const double d = fabric.diameter_mm, radius = yarn.diameter / 2 * d;
-  tube.first = {centre.front() * d, tangent.front(), normal.front()};
-  tube.last = {centre.back() * d, tangent.back(), normal.back()};
-  const auto scaled = [](std::vector<Vec3> points, double factor) {
-    points = clamped(points);
+  for (std::size_t k = 0; k < n; ++k) tube.rings.push_back({centre[k] * d, tangent[k], normal[k]});
+  if (ring) tube.rings.back() = tube.rings.front();
+  const auto scale = [](std::vector<Vec3>& points, double factor) {
     for (Vec3& p : points) p *= factor;
-    return points;
   };
-  tube.centre = scaled(tube.centre, d);
-  tube.normal = scaled(tube.normal, radius);
-  tube.binormal = scaled(tube.binormal, radius);
+  scale(tube.centre, d);
+  scale(tube.normal, radius);
+  scale(tube.binormal, radius);
   return tube;
 }
 
@@ -103,76 +102,108 @@ TubeSpline tube_spline(const Fabric& fabric, const FabricYarn& yarn, int per_seg
 constexpr std::array<std::array<double, 2>, 9> circle{
     {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}, {1, 0}}};
 
+// The side is cut into faces of so many segments of the yarn: meshers, OpenCASCADE's among them, lose their
+// way on one face that winds through a whole course.
+constexpr int segments_in_a_face = 2;
+
 class TubeWriter {
  public:
-  TubeWriter(StepWriter& step, const TubeSpline& tube, double radius, bool ring, const Vec3& moved)
-      : step_(step), tube_(tube), radius_(radius), ring_(ring), moved_(moved) {}
+  TubeWriter(StepWriter& step, const TubeSpline& tube, int face_length, double radius, bool ring,
+             const Vec3& moved)
+      : step_(step),
+        tube_(tube),
+        face_length_(static_cast<std::size_t>(face_length)),
+        radius_(radius),
+        ring_(ring),
+        moved_(moved) {}
 
   int solid(const std::string& name) {
-    const int surface = put_surface();
-    const int seam_curve = step_.curve("", rows_[0], ring_);
-    const int first_vertex = vertex(tube_.first), last_vertex = ring_ ? first_vertex : vertex(tube_.last);
-    const int first = circle_edge(tube_.first, first_vertex);
-    const int last = ring_ ? first : circle_edge(tube_.last, last_vertex);
-    const int seam = edge(first_vertex, last_vertex, seam_curve);
-    std::vector<int> faces{face(
-        surface, {oriented(first, true), oriented(seam, true), oriented(last, false), oriented(seam, false)},
-        true)};
+    const std::size_t last_knot = tube_.rings.size() - 1;
+    const Edges first = edges_at(0);
+    Edges from = first;
+    std::vector<int> faces;
+    for (std::size_t begin = 0; begin < last_knot;) {
+      std::size_t end = std::min(begin + face_length_, last_knot);
+      if (last_knot - end < face_length_ / 2) end = last_knot;  // no sliver
+      const Edges to = ring_ && end == last_knot ? first : edges_at(end);
+      faces.push_back(side(begin, end, from, to));
+      begin = end, from = to;
+    }
     if (!ring_) {
-      faces.push_back(face(plane(tube_.first), {oriented(first, false)}, false));
-      faces.push_back(face(plane(tube_.last), {oriented(last, true)}, true));
+      faces.push_back(face(plane(tube_.rings.front()), {oriented(first.circle, false)}, false));
+      faces.push_back(face(plane(tube_.rings.back()), {oriented(from.circle, true)}, true));
     }
     const int shell = step_.put("CLOSED_SHELL(''," + step_list(faces) + ')');
     return step_.put("MANIFOLD_SOLID_BREP(" + step_text(name) + ',' + step_ref(shell) + ')');
   }
 
  private:
-  int put_surface() {
+  // The circle where faces meet, and the point on it where it begins and ends.
+  struct Edges {
+    int vertex = 0, circle = 0;
+  };
+  Edges edges_at(std::size_t knot) {
+    const TubeSpline::Ring& ring = tube_.rings[knot];
+    const int point = step_.point(ring.centre + ring.normal * radius_ + moved_);
+    Edges edges;
+    edges.vertex = step_.put("VERTEX_POINT(''," + step_ref(point) + ')');
+    const int curve = step_.put("CIRCLE(''," + step_ref(placement(ring)) + ',' + step_real(radius_) + ')');
+    edges.circle = edge(edges.vertex, edges.vertex, curve);
+    return edges;
+  }
+
+  int side(std::size_t begin, std::size_t end, const Edges& from, const Edges& to) {
+    const std::vector<std::vector<int>> rows = put_rows(begin, end);
+    const int surface = put_surface(rows);
+    const int seam = edge(from.vertex, to.vertex, step_.curve("", rows[0], false));
+    return face(surface,
+                {oriented(from.circle, true), oriented(seam, true), oriented(to.circle, false),
+                 oriented(seam, false)},
+                true);
+  }
+
+  // Numbers of the surface's control points between two knots, by u, then v.
+  std::vector<std::vector<int>> put_rows(std::size_t begin, std::size_t end) {
+    const auto part = [&](const std::vector<Vec3>& control) {
+      return clamped({control.begin() + static_cast<std::ptrdiff_t>(begin),
+                      control.begin() + static_cast<std::ptrdiff_t>(end) + 3});
+    };
+    const std::vector<Vec3> centre = part(tube_.centre), normal = part(tube_.normal),
+                            binormal = part(tube_.binormal);
+    std::vector<std::vector<int>> rows(circle.size());
+    for (std::size_t u = 0; u + 1 < circle.size(); ++u)
+      for (std::size_t v = 0; v < centre.size(); ++v)
+        rows[u].push_back(
+            step_.point(moved_ + centre[v] + normal[v] * circle[u][0] + binormal[v] * circle[u][1]));
+    rows.back() = rows.front();  // the circle ends where it begins
+    return rows;
+  }
+
+  int put_surface(const std::vector<std::vector<int>>& rows) {
     std::string points = "(", weights = "(";
-    for (std::size_t u = 0; u < circle.size(); ++u) {
-      // the circle ends where it begins
-      if (u + 1 == circle.size())
-        rows_.push_back(rows_[0]);
-      else
-        rows_.push_back(row(circle[u]));
-      points += (u > 0 ? "," : "") + step_list(rows_[u]);
+    for (std::size_t u = 0; u < rows.size(); ++u) {
+      points += (u > 0 ? "," : "") + step_list(rows[u]);
       weights += u > 0 ? ",(" : "(";
       const std::string weight = u % 2 == 0 ? "1." : step_real(std::sqrt(0.5));
-      for (std::size_t v = 0; v < rows_[u].size(); ++v) weights += (v > 0 ? "," : "") + weight;
+      for (std::size_t v = 0; v < rows[u].size(); ++v) weights += (v > 0 ? "," : "") + weight;
       weights += ')';
     }
-    const std::string knots = clamped_knots(tube_.centre.size() - 3);
+    const std::string knots = clamped_knots(rows[0].size() - 3);
     const std::size_t parted = knots.find("),(");
-    return step_.put("(BOUNDED_SURFACE()B_SPLINE_SURFACE(2,3," + points + "),.UNSPECIFIED.,.T.," +
-                     (ring_ ? ".T." : ".F.") + ",.F.)B_SPLINE_SURFACE_WITH_KNOTS((3,2,2,2,3)," +
+    return step_.put("(BOUNDED_SURFACE()B_SPLINE_SURFACE(2,3," + points +
+                     "),.UNSPECIFIED.,.T.,.F.,.F.)B_SPLINE_SURFACE_WITH_KNOTS((3,2,2,2,3)," +
                      knots.substr(0, parted + 1) + ",(0.,1.,2.,3.,4.)," + knots.substr(parted + 2) +
                      ",.UNSPECIFIED.)GEOMETRIC_REPRESENTATION_ITEM()RATIONAL_B_SPLINE_SURFACE(" + weights +
                      "))REPRESENTATION_ITEM('')SURFACE())");
   }
 
-  std::vector<int> row(const std::array<double, 2>& corner) {
-    std::vector<int> numbers;
-    for (std::size_t v = 0; v < tube_.centre.size(); ++v)
-      numbers.push_back(step_.point(moved_ + tube_.centre[v] + tube_.normal[v] * corner[0] +
-                                    tube_.binormal[v] * corner[1]));
-    return numbers;
-  }
-
-  int placement(const TubeSpline::End& end) {
+  int placement(const TubeSpline::Ring& end) {
     const int centre = step_.point(end.centre + moved_), axis = step_.direction(end.tangent),
               across = step_.direction(end.normal);
     return step_.put("AXIS2_PLACEMENT_3D(''," + step_ref(centre) + ',' + step_ref(axis) + ',' +
                      step_ref(across) + ')');
   }
-  int plane(const TubeSpline::End& end) { return step_.put("PLANE(''," + step_ref(placement(end)) + ')'); }
-  int vertex(const TubeSpline::End& end) {
-    const int point = step_.point(end.centre + end.normal * radius_ + moved_);
-    return step_.put("VERTEX_POINT(''," + step_ref(point) + ')');
-  }
-  int circle_edge(const TubeSpline::End& end, int at) {
-    const int curve = step_.put("CIRCLE(''," + step_ref(placement(end)) + ',' + step_real(radius_) + ')');
-    return edge(at, at, curve);
-  }
+  int plane(const TubeSpline::Ring& end) { return step_.put("PLANE(''," + step_ref(placement(end)) + ')'); }
   int edge(int from, int to, int curve) {
     return step_.put("EDGE_CURVE(''," + step_ref(from) + ',' + step_ref(to) + ',' + step_ref(curve) +
                      ",.T.)");
@@ -189,10 +220,10 @@ class TubeWriter {
 
   StepWriter& step_;
   const TubeSpline& tube_;
+  std::size_t face_length_ = 1;  // knots
   double radius_ = 0;
   bool ring_ = false;
   Vec3 moved_;
-  std::vector<std::vector<int>> rows_;  // numbers of the surface's control points, by u, then v
 };
 
 int surface_style(StepWriter& step, const std::array<std::uint8_t, 3>& rgb) {
@@ -221,8 +252,8 @@ void write_step_tubes(const std::filesystem::path& path, const Fabric& fabric, c
     const auto rgb = drawn_colour(fabric, y);
     if (!styles.contains(rgb)) styles[rgb] = surface_style(step, rgb);
     for_each_cell(fabric, options, [&](int m, int n, const Vec3& moved) {
-      TubeWriter writer(step, tube, yarn.diameter / 2 * fabric.diameter_mm, is_closed(yarn),
-                        moved * fabric.diameter_mm);
+      TubeWriter writer(step, tube, segments_in_a_face * options.per_segment,
+                        yarn.diameter / 2 * fabric.diameter_mm, is_closed(yarn), moved * fabric.diameter_mm);
       solids.push_back(writer.solid(step_name(fabric, options, y, m, n)));
       styled.push_back(
           step.put("STYLED_ITEM('',(" + step_ref(styles[rgb]) + ")," + step_ref(solids.back()) + ')'));

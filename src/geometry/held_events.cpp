@@ -79,4 +79,17 @@ HeldEvents held_events(const YarnGraph& graph) {
   return events;
 }
 
+bool is_held_at(const Loop& loop, int instruction) {
+  return loop.head_instruction < 0 || loop.head_instruction > instruction;
+}
+
+int rows_waited(const YarnGraph& graph, LoopId from, LoopId to) {
+  int rows = 0;
+  for (LoopId at = from; !graph.loop(at).children.empty(); ++rows) {
+    at = graph.loop(at).children.front();
+    if (graph.loop(at).instruction >= graph.loop(to).instruction) break;
+  }
+  return rows < 2 ? 0 : rows;
+}
+
 }  // namespace loopwright

@@ -24,6 +24,14 @@ struct HeldEvents {
 
 HeldEvents held_events(const YarnGraph& graph);
 
+// Whether a loop's head is still on a needle at that time.
+bool is_held_at(const Loop& loop, int instruction);
+
+// How many rows the cloth grew at `from`, the last loop of a yarn before `to`, while the yarn waited (its
+// carrier stood still): its float is as long as they are, and the two loops do not lie at one level. Not
+// counted (0) where that is less than two rows, as in turning or in jacquard.
+int rows_waited(const YarnGraph& graph, LoopId from, LoopId to);
+
 // The stack that a loop's head lies in: the parents of its first child, or what its needle holds at the end.
 std::vector<std::vector<LoopId>> head_stacks(const YarnGraph& graph);
 

@@ -101,8 +101,7 @@ std::vector<LoopId> facing_loops(const YarnGraph& graph) {
       const auto found = last.find({!front, key(loop.slot) + half});
       if (found == last.end()) continue;
       const Loop& other = graph.loop(found->second);
-      const bool held = other.head_instruction < 0 || other.head_instruction > loop.instruction;
-      if (held && facing[i] < found->second) facing[i] = found->second;
+      if (is_held_at(other, loop.instruction) && facing[i] < found->second) facing[i] = found->second;
     }
     if (is_front(loop.head_bed) == front) last[{front, key(loop.slot)}] = LoopId(i);
   }
@@ -162,12 +161,13 @@ Eigen::VectorXd levels(const YarnGraph& graph, const GeometryOptions& options, N
       const Loop& to = graph.loop(yarn_float.to);
       const double span = to.slot - from.slot;
       const bool turns = from.direction != to.direction;  // the next course: no reason to lie at one level
-      if (!turns)
+      const bool waited = rows_waited(graph, yarn_float.from, yarn_float.to) > 0;  // nor here
+      if (!turns && !waited)
         rows.add_row({{nodes.lower(yarn_float.to), 1}, {nodes.lower(yarn_float.from), -1}}, 0,
                      yarn_weight / std::max(1.0, std::abs(span)));
       for (const PassedLoop& passed : yarn_float.passed) {
-        const double along =
-            std::abs(span) < 1e-9 ? 0.5 : std::clamp((passed.slot - from.slot) / span, 0.0, 1.0);
+        double along = std::abs(span) < 1e-9 ? 0.5 : std::clamp((passed.slot - from.slot) / span, 0.0, 1.0);
+        if (waited) along = is_held_at(graph.loop(passed.loop), to.instruction) ? 1 : 0;
         const double share = events.share_of_float(passed.loop, static_cast<int>(y), static_cast<int>(k));
         rows.add_row({{nodes.lower(yarn_float.from), 1 - along},
                       {nodes.lower(yarn_float.to), along},

@@ -60,6 +60,12 @@ class SinkerPlacer {
     PlacedSinker sinker;
     sinker.extra_length = extra_length(graph_.loop(from), graph_.loop(to));
     const double pitch = 8 * sx_;
+    if (rows_waited(graph_, from, to) > 0) {
+      const std::vector<Vec3> way = waiting(yarn, gap, whole);
+      for (std::size_t k = 1; k < way.size(); ++k) sinker.extra_length += distance(way[k - 1], way[k]);
+      place_along(sinker, from, way);
+      return sinker;
+    }
     if (along_course(from, to, whole) < 0.75 * pitch) {
       Vec3 middle = (whole.begin + whole.end) / 2;
       // Between two loops that go through one head both ways the sinker goes round that head's leg, below it.
@@ -78,18 +84,58 @@ class SinkerPlacer {
       return sinker;
     }
     std::vector<Vec3> way{whole.begin};
-    for (const Pass& pass : passed(yarn, gap, whole))
-      for (const double side : {-whole.ahead(), whole.ahead()})
-        way.push_back(pass.turn * (pass.place + Vec3{side * 2.6 * sx_, 0, 0}));
+    pass_by(way, yarn, gap, yarn_float.passed, whole);
     way.push_back(whole.end);
-    way = fill(way, pitch);
-    sinker.middle = middle_of(way);
-    for (std::size_t k = 0; k < way.size(); ++k)
-      sinker.points.push_back(point(from, k == sinker.middle ? LoopPart::sinker : LoopPart::span, way[k]));
+    place_along(sinker, from, way);
     return sinker;
   }
 
  private:
+  void place_along(PlacedSinker& sinker, LoopId from, const std::vector<Vec3>& corners) const {
+    const std::vector<Vec3> way = fill(corners, 8 * sx_);
+    sinker.middle = middle_of(way);
+    for (std::size_t k = 0; k < way.size(); ++k)
+      sinker.points.push_back(point(from, k == sinker.middle ? LoopPart::sinker : LoopPart::span, way[k]));
+  }
+
+  // A yarn that waits while the cloth grows leaves it at its edge, runs up outside it, and comes back where
+  // it is knitted again. Carriers that wait side by side keep their yarns apart.
+  std::vector<Vec3> waiting(int yarn, int gap, const Way& whole) const {
+    const Float& yarn_float =
+        graph_.yarns[static_cast<std::size_t>(yarn)].floats[static_cast<std::size_t>(gap)];
+    const LoopId from = yarn_float.from, to = yarn_float.to;
+    const int back = graph_.loop(to).instruction;
+    std::vector<PassedLoop> leaving, coming;
+    for (const PassedLoop& passed : yarn_float.passed)
+      (is_held_at(graph_.loop(passed.loop), back) ? coming : leaving).push_back(passed);
+    const auto outside = [&](const Layout& layout, LoopId id, double side,
+                             const std::vector<PassedLoop>& passes) {
+      double beyond = 0;
+      for (const PassedLoop& held : passes)
+        beyond = std::max(beyond, side * (held.slot - graph_.loop(id).slot));
+      const double out = beyond * layout.slot_pitch + 4 * sx_ + 2.5 * r_ * yarn;
+      return hanging(layout, id, side) + layout.lower_turn(id) * Vec3{side * out, 0, 0};
+    };
+    const double exit = exit_side(from), entry = entry_side(to);
+    const Way out{whole.begin, outside(piece_.layout, from, exit, leaving), whole.flat_begin,
+                  outside(flat_, from, exit, leaving)};
+    const Way in{outside(piece_.layout, to, entry, coming), whole.end, outside(flat_, to, entry, coming),
+                 whole.flat_end};
+    std::vector<Vec3> way{out.begin};
+    pass_by(way, yarn, gap, leaving, out);
+    way.insert(way.end(), {out.end, in.begin});
+    pass_by(way, yarn, gap, coming, in);
+    way.push_back(in.end);
+    return way;
+  }
+
+  void pass_by(std::vector<Vec3>& way, int yarn, int gap, const std::vector<PassedLoop>& loops,
+               const Way& whole) const {
+    for (const Pass& pass : passed(yarn, gap, loops, whole))
+      for (const double side : {-whole.ahead(), whole.ahead()})
+        way.push_back(pass.turn * (pass.place + Vec3{side * 2.6 * sx_, 0, 0}));
+  }
+
   TypePoint point(LoopId id, LoopPart part, Vec3 position) const {
     TypePoint p;
     p.position = position;
@@ -169,10 +215,9 @@ class SinkerPlacer {
     for (const LoopId child : loop.children) take(piece_.loops[child.position()]);
   }
 
-  std::vector<Pass> passed(int yarn, int gap, const Way& way) const {
+  std::vector<Pass> passed(int yarn, int gap, std::vector<PassedLoop> loops, const Way& way) const {
     const Float& yarn_float =
         graph_.yarns[static_cast<std::size_t>(yarn)].floats[static_cast<std::size_t>(gap)];
-    std::vector<PassedLoop> loops = yarn_float.passed;
     add_own_wales(yarn_float, way, loops);
     // what is in the other wall of a tube is passed already
     std::erase_if(loops, [&](const PassedLoop& held) {

@@ -48,6 +48,7 @@ class NetBuilder {
     if (options_.coupling) couple();
     if (options_.shear > 0) add_shear();
     if (options_.bend > 0 || options_.fold > 0) add_second_neighbours();
+    if (options_.passing > 0) add_passings();
     return std::move(net_);
   }
 
@@ -107,9 +108,40 @@ class NetBuilder {
     return leans;
   }
 
+  // By loop: for how many tucks and floats it grew while it was held. Nothing passes a loop at the selvedge,
+  // but it is held as long as those beside it, and grows as they do.
+  std::vector<double> events_in_row() const {
+    const HeldEvents events = held_events(graph_);
+    std::vector<double> counts(graph_.loops.size());
+    for (std::size_t k = 0; k < counts.size(); ++k) {
+      // what the other wall of a tube does meanwhile needs no room
+      const auto own = [&](const HeldEvent& event) {
+        if (event.tuck.valid()) return walls_[k] * walls_[event.tuck.position()] >= 0;
+        const Float& passing = graph_.yarns[at(event.yarn)].floats[at(event.gap)];
+        return walls_[k] * walls_[passing.to.position()] >= 0;
+      };
+      counts[k] = static_cast<double>(std::count_if(events.of_loop[k].begin(), events.of_loop[k].end(), own));
+    }
+    std::vector<double> grown = counts;
+    for (const GraphYarn& yarn : graph_.yarns)
+      for (std::size_t i = 0; i + 1 < yarn.loops.size(); ++i) {
+        const LoopId one = yarn.loops[i], other = yarn.loops[i + 1];
+        if (graph_.loop(one).direction != graph_.loop(other).direction) continue;
+        const bool first = i == 0 || turns(yarn, i - 1),
+                   last = i + 2 == yarn.loops.size() || turns(yarn, i + 1);
+        if (first) grown[one.position()] = std::max(grown[one.position()], counts[other.position()]);
+        if (last) grown[other.position()] = std::max(grown[other.position()], counts[one.position()]);
+      }
+    return grown;
+  }
+  // Whether a yarn turns between its loops `order` and `order` + 1.
+  bool turns(const GraphYarn& yarn, std::size_t order) const {
+    return graph_.loop(yarn.loops[order]).direction != graph_.loop(yarn.loops[order + 1]).direction;
+  }
+
   void add_warps() {
     // Held loops draw yarn as they are passed; tucks are lower: as in geometry's layout.
-    const HeldEvents events = held_events(graph_);
+    const std::vector<double> grown = events_in_row();
     warp_of_.assign(graph_.loops.size(), none);
     const std::vector<double> leans = leans_in_course();
     std::set<std::pair<std::int32_t, std::int32_t>> known;
@@ -118,15 +150,7 @@ class NetBuilder {
       if (a == b) continue;
       const Loop& loop = graph_.loops[k];
       const Connection& connection = odd_warp(k) ? table_.warp_odd : table_.warp_even;
-      // what the other wall of a tube does meanwhile needs no room
-      const auto own = [&](const HeldEvent& event) {
-        if (event.tuck.valid()) return walls_[k] * walls_[event.tuck.position()] >= 0;
-        const Float& passing = graph_.yarns[at(event.yarn)].floats[at(event.gap)];
-        return walls_[k] * walls_[passing.to.position()] >= 0;
-      };
-      const double count =
-          static_cast<double>(std::count_if(events.of_loop[k].begin(), events.of_loop[k].end(), own));
-      double high = 1 + std::min(2.5, 0.45 * count);
+      double high = 1 + std::min(2.5, 0.45 * grown[k]);
       if (loop.kind == LoopKind::tuck) high = 0.6;
       Vec3 rest = rest_of(connection, a, b, 0, high);
       // a head that was moved to another wale: the yarn goes over there
@@ -156,23 +180,25 @@ class NetBuilder {
         const std::int32_t a = points_.lower[from.position()], b = points_.lower[to.position()];
         const double step = (second.slot - first.slot) / slots_per_wale_;
         const double wales = std::max(std::abs(step), 1.0);
-        const bool turns = first.direction != second.direction;
+        const bool is_turn = turns(yarn, k);
         // Round the edge of a tube the face is the same, seen from outside, where it differs from front to
         // rear.
         const bool over = walls_[from.position()] * walls_[to.position()] < 0;
         const bool odd =
-            over ? first.side == second.side : !turns && first.side != second.side && wales < 1.5;
+            over ? first.side == second.side : !is_turn && first.side != second.side && wales < 1.5;
         const Connection& connection = odd ? table_.weft_odd : table_.weft_even;
         Vec3 rest = rest_of(connection, a, b, step < 0 ? -wales : wales, 0);
-        if (turns && !over && std::abs(step) < 0.5) {
+        if (is_turn && !over && std::abs(step) < 0.5) {
           // straight over to the other bed, or up to the next row
           const Vec3 way = start_[at(b)] - start_[at(a)];
           rest = norm(way) > 0 ? normalized(way) * norm(rest) : rest;
         }
+        const double rows = rows_waited(graph_, from, to);
+        if (rows > 0) rest.y += rows * table_.warp_even.rest.y * length_;
         weft_after_[from.position()] = static_cast<std::int32_t>(net_.springs.size());
         if (over) over_edge_.insert(weft_after_[from.position()]);
         net_.springs.push_back(
-            {a, b, own_stiffness(connection, connection.coupling) / wales, rest, SpringKind::weft});
+            {a, b, own_stiffness(connection, connection.coupling) / (wales + rows), rest, SpringKind::weft});
       }
   }
 
@@ -239,6 +265,25 @@ class NetBuilder {
         join(weft_after_[yarn.loops[k].position()], weft_after_[yarn.loops[k + 1].position()]);
     for (std::size_t k = 0; k < graph_.loops.size(); ++k)
       for (const LoopId child : graph_.loops[k].children) join(warp_of_[k], warp_of_[child.position()]);
+  }
+
+  // A held loop that a float passes stays between the float's ends, as far from each as on the needles.
+  void add_passings() {
+    for (const GraphYarn& yarn : graph_.yarns)
+      for (std::size_t k = 0; k + 1 < yarn.loops.size(); ++k) {
+        const LoopId from = yarn.loops[k], to = yarn.loops[k + 1];
+        const std::int32_t weft = weft_after_[from.position()];
+        if (weft == none || graph_.loop(from).direction != graph_.loop(to).direction) continue;
+        const double stiffness = options_.passing * net_.springs[at(weft)].stiffness;
+        for (const PassedLoop& passed : yarn.floats[k].passed)
+          for (const LoopId end : {from, to}) {
+            if (walls_[passed.loop.position()] != walls_[end.position()]) continue;
+            const double wales = (passed.slot - graph_.loop(end).slot) / slots_per_wale_;
+            const Vec3 rest{wales * table_.weft_even.rest.x * length_, 0, 0};
+            add_if_new(points_.lower[end.position()], points_.upper[passed.loop.position()], stiffness, rest,
+                       SpringKind::passing);
+          }
+      }
   }
 
   void add_if_new(std::int32_t a, std::int32_t b, double stiffness, const Vec3& rest, SpringKind kind) {

@@ -40,6 +40,9 @@ struct LoopModelOptions {
   // over odd connections, whose fold nothing else keeps; at 1/4 a rib is as stiff to its width as was
   // measured. `bend`: over even ones, which lets a tube open.
   double fold = 0, bend = 0;
+  // Springs from a float's ends to the held loops that it passes, as a share of the float's own: wales that
+  // are knitted in different courses (interlock) hold each other in no other way.
+  double passing = 0;
   double damping = 1;  // over settling_damping
   std::vector<PiecePlace> clamps;
   std::vector<Pull> pulls;

@@ -16,7 +16,7 @@ namespace loopwright {
 
 // weft: lower binding points of neighbours in a course; warp: lower and upper binding point of a loop; shear
 // and bend: diagonals and second neighbours, of the traditional net (figure 5) and as options.
-enum class SpringKind : std::uint8_t { weft, warp, shear, bend };
+enum class SpringKind : std::uint8_t { weft, warp, shear, bend, passing };
 
 // What "spring deformation vector" of (6) is taken to be.
 //   along   (length - rest length) along the spring: free to turn, as springs are

@@ -142,8 +142,29 @@ std::vector<Round> rounds_of(const YarnGraph& graph, const BindingPoints& points
   return rounds;
 }
 
+namespace {
+
+// A course that is knitted to and fro between the walls (waste in interlock) joins them: there is no tube.
+void lay_flat_between_walls(const YarnGraph& graph, const std::vector<bool>& in_round,
+                            std::vector<std::int8_t>& walls) {
+  std::vector<std::size_t> between;
+  const auto is_loose = [&](LoopId id) { return !in_round[id.position()]; };
+  for (const GraphYarn& yarn : graph.yarns)
+    for (std::size_t i = 0; i + 1 < yarn.loops.size(); ++i) {
+      const LoopId one = yarn.loops[i], other = yarn.loops[i + 1];
+      const bool goes_on = graph.loop(one).direction == graph.loop(other).direction;
+      if (!goes_on || walls[one.position()] * walls[other.position()] >= 0) continue;
+      for (const LoopId id : {one, other})
+        if (is_loose(id)) between.push_back(id.position());
+    }
+  for (const std::size_t k : between) walls[k] = 0;
+}
+
+}  // namespace
+
 std::vector<std::int8_t> tube_walls(const YarnGraph& graph, const std::vector<Round>& rounds) {
   std::vector<std::int8_t> walls(graph.loops.size(), 0);
+  std::vector<bool> in_round(graph.loops.size(), false);
   std::deque<LoopId> reached;
   for (const Round& round : rounds)
     for (const bool is_one : {true, false}) {
@@ -151,6 +172,7 @@ std::vector<std::int8_t> tube_walls(const YarnGraph& graph, const std::vector<Ro
       for (std::size_t i = run.first; i <= run.last; ++i) {
         const LoopId id = graph.yarns[run.yarn].loops[i];
         walls[id.position()] = is_one == round.one_in_front ? 1 : -1;
+        in_round[id.position()] = true;
         reached.push_back(id);
       }
     }
@@ -164,6 +186,7 @@ std::vector<std::int8_t> tube_walls(const YarnGraph& graph, const std::vector<Ro
           reached.push_back(next);
         }
   }
+  lay_flat_between_walls(graph, in_round, walls);
   return walls;
 }
 

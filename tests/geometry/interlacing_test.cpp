@@ -79,7 +79,7 @@ INSTANTIATE_TEST_SUITE_P(
                     RealFile{"files/halfmilano.knitout"}, RealFile{"files/fullrib.knitout"},
                     RealFile{"files/birdseye_sheet.k"}, RealFile{"files/simple_lace.k"},
                     RealFile{"files/cable_swatch_2_cable.k"}, RealFile{"files/stockenette_tube.k", 1},
-                    RealFile{"files/single_color_brioche.k", 16},
+                    RealFile{"files/single_color_brioche.k", 16}, RealFile{"files/RibTube.k", 0, 0.1},
                     RealFile{"knitdb/2_1_004Stockinette.knitout"}, RealFile{"knitdb/60_1_074Cable_2.knitout"},
                     RealFile{"knitdb/74_3_124lace_rib.knitout", 0, 0.15},
                     RealFile{"knitdb/82_3_155Josephine.knitout", 0, 0.15},

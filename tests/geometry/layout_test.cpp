@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "geometry/held_events.hpp"
 #include "geometry/pieces.hpp"
 
 namespace loopwright {
@@ -94,6 +95,37 @@ TEST(layout, half_gauge_lies_as_wide_as_its_wales) {
   EXPECT_DOUBLE_EQ(slots_per_wale(piece.graph), 2);
   EXPECT_NEAR(piece.placed.layout.lower[1].x - piece.placed.layout.lower[0].x, piece.options.wale_pitch,
               1e-12);
+}
+
+// A second yarn knits two courses, waits at the left edge while the first knits ten more, and goes on there.
+TEST(layout, a_yarn_that_waits_runs_up_outside_the_edge) {
+  constexpr int needles = 12, wait = 10;
+  std::string text = ";!knitout-2\n;;Carriers: 1 2\n";
+  const auto course = [&](int carrier, bool right) {
+    for (int k = 0; k < needles; ++k)
+      text += std::string("knit ") + (right ? "+ f" : "- f") + std::to_string(right ? k : needles - 1 - k) +
+              ' ' + std::to_string(carrier) + '\n';
+  };
+  const auto pair = [&](int carrier) { course(carrier, true), course(carrier, false); };
+  text += "inhook 1\n", pair(1), text += "inhook 2\n", pair(2);
+  for (int k = 0; k < wait; k += 2) pair(1);
+  pair(2), pair(1);
+  const Piece piece = piece_of_text(text + "outhook 2\nouthook 1\n");
+  const Fabric fabric = whole_fabric(piece);
+  const InterlacingCheck check = check_interlacings(fabric);
+  EXPECT_EQ(check.intact, check.expected);
+
+  const GraphYarn& second = piece.graph.yarns[1];
+  const LoopId last = second.loops[2 * needles - 1], next = second.loops[2 * needles];
+  EXPECT_EQ(rows_waited(piece.graph, last, next), wait);
+  const PlacedSinker& sinker = piece.placed.sinkers[1][2 * needles];
+  const double edge = piece.placed.layout.lower[last.position()].x;
+  EXPECT_LT(sinker.points[sinker.middle].position.x, edge - 0.75 * piece.options.wale_pitch);
+  EXPECT_GT(sinker.extra_length, 0.9 * wait * piece.options.course_pitch);
+  // the rows in between are as high as others, and all wales as tall as one another
+  const Layout& layout = piece.placed.layout;
+  for (const LoopId id : piece.graph.yarns[0].loops)
+    EXPECT_NEAR(layout.step(id).y, piece.options.course_pitch, 0.05 * piece.options.course_pitch);
 }
 
 TEST(geometry_options, defaults_and_what_a_file_says) {

@@ -6,6 +6,7 @@
 
 #include "geometry/pieces.hpp"
 #include "loop_scale/relaxed_layout.hpp"
+#include "loop_scale/tube_walls.hpp"
 
 namespace loopwright {
 namespace {
@@ -117,6 +118,50 @@ TEST(relaxed_layout, rib_stays_flat_with_its_stitches_on_their_sides) {
     const auto [rear, front] = std::minmax_element(layout.state.z.begin(), layout.state.z.end());
     EXPECT_LT(*front - *rear, 0.5 * layout.model.yarn.loop_length) << chart.front();
   }
+}
+
+// Two tubes on half gauge with interlock waste between them: every course of the waste goes to and fro
+// between the two walls, and its wales hold each other only by the floats that pass them.
+std::string tubes_with_waste(int n, int rounds, int waste) {
+  std::string text = ";!knitout-2\n;;Carriers: 1\ninhook 1\n";
+  const auto knit = [&](bool right, char bed, int needle) {
+    text += std::string("knit ") + (right ? '+' : '-') + ' ' + bed + std::to_string(needle) + " 1\n";
+  };
+  const auto tube = [&] {
+    for (int round = 0; round < rounds; ++round) {
+      for (int k = 0; k < n; ++k) knit(true, 'f', 2 * k);
+      for (int k = n - 1; k >= 0; --k) knit(false, 'b', 2 * k + 1);
+    }
+  };
+  tube();
+  for (int course = 0; course < waste; ++course) {
+    for (int k = 0; k < n; k += 2) knit(true, 'f', 2 * k), knit(true, 'b', 2 * k + 1);
+    for (int k = n - 1; k > 0; k -= 2) knit(false, 'b', 2 * k + 1), knit(false, 'f', 2 * k);
+  }
+  tube();
+  return text + "outhook 1\n";
+}
+
+TEST(relaxed_layout, waste_between_tubes_is_flat_and_the_tubes_close_toward_it) {
+  constexpr int n = 12, rounds = 24, waste = 12;
+  const Piece piece = piece_of_text(tubes_with_waste(n, rounds, waste));
+  const RelaxedLayout layout = relaxed_layout(piece.graph, piece.program);
+  EXPECT_TRUE(layout.result.settled);
+  EXPECT_EQ(layout.wrong, 0);
+  EXPECT_EQ(intact(piece, layout), static_cast<int>(piece.graph.interlacings.size()));
+  const std::vector<std::int8_t> walls = tube_walls(piece.graph, rounds_of(piece.graph, layout.model.points));
+  // but for a course where one goes over into the other
+  const std::size_t course = 2 * n, tube_end = course * rounds, waste_end = tube_end + course * waste;
+  for (std::size_t k = 0; k < walls.size(); ++k) {
+    const bool in_waste = k > tube_end + course && k + course < waste_end;
+    if (in_waste || k + course < tube_end || k > waste_end + course) {
+      EXPECT_EQ(walls[k] == 0, in_waste) << k;
+    }
+  }
+  const std::vector<RoundMeasure> measures = round_measures(piece.graph, layout);
+  ASSERT_GE(measures.size(), 2U * rounds - 2);
+  EXPECT_GT(measures[rounds / 2].roundness, 0.6);
+  EXPECT_LT(measures[rounds - 1].roundness, 0.5 * measures[rounds / 2].roundness);
 }
 
 struct Programme {

@@ -43,7 +43,16 @@ void ClothView::choose_at(const QPointF& at) {
 }
 
 // Takes hold of a binding point (loop model) or of an edge of the cloth (yarn model).
-void ClothView::begin_pull(const QPointF& at) {
+void ClothView::begin_yarn_pull(const QPointF& at) {
+  if (!drawn_ || !session_.moment().relaxed) return;
+  const auto picked = yarn_at(*drawn_, repeats_, sight_at(at));
+  if (!picked) return;
+  session_.take_hold(picked->yarn, picked->t);
+  drag_.held = picked->place;
+  drag_.pulls = drag_.pulls_yarn = true;
+}
+
+void ClothView::begin_pull(const QPointF& at, bool at_yarn) {
   if (style_ != ClothStyle::yarn) {
     if (!motion_) return;
     const Sight sight = sight_at(at);
@@ -53,6 +62,10 @@ void ClothView::begin_pull(const QPointF& at) {
     drag_.held = motion_->state().position(*mass);
     motion_->grab(*mass);
     drag_.pulls = true;
+    return;
+  }
+  if (at_yarn) {
+    begin_yarn_pull(at);
     return;
   }
   if (!session_.moment().relaxed || !scene_ || camera_.backward.z < 0.5) return;
@@ -93,6 +106,13 @@ void ClothView::pull(const QPointF& at) {
     emit edge_pulled(drag_.edge, std::clamp(2 * moved / size, -0.3, 1.0));
     return;
   }
+  if (drag_.pulls_yarn) {
+    // as a spring in the hand: a diameter of way is a force of B/d^2
+    const QPointF way = at - drag_.start;
+    const double scale = camera_.height / height();
+    session_.pull(camera_.right() * (way.x() * scale) - camera_.up * (way.y() * scale));
+    return;
+  }
   if (!motion_) return;
   // the point stays under the mouse, in the plane across the line of sight
   const Sight before = sight_at(drag_.last), now = sight_at(at);
@@ -109,18 +129,20 @@ void ClothView::pull(const QPointF& at) {
 }
 
 void ClothView::end_pull() {
-  if (!drag_.pulls_edge && motion_) {
+  if (drag_.pulls_yarn) session_.pull({});
+  if (!drag_.pulls_edge && !drag_.pulls_yarn && motion_) {
     motion_->let_go();
     if (playing_) frame_timer_.start();
   }
-  drag_.pulls = drag_.pulls_edge = false;
+  drag_.pulls = drag_.pulls_edge = drag_.pulls_yarn = false;
 }
 
 void ClothView::mousePressEvent(QMouseEvent* event) {
   drag_ = {};
   drag_.act = mouse_act(habit_, buttons_of(event));
   drag_.start = drag_.last = event->position();
-  if (drag_.act == MouseAct::choose) begin_pull(event->position());
+  if (drag_.act == MouseAct::choose)
+    begin_pull(event->position(), event->modifiers().testFlag(Qt::ControlModifier));
 }
 
 void ClothView::mouseMoveEvent(QMouseEvent* event) {

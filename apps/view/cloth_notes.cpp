@@ -34,6 +34,11 @@ void ClothView::paint_notes(QPainter& painter, QSize size) {
     const double mm = drawn_ ? drawn_->diameter_mm : motion_ ? motion_->model().geometry.diameter_mm : 1;
     const ScaleBar bar = scale_bar(camera_, mm, size.width(), size.height());
     const double right = size.width() - 18.0, y = size.height() - 18.0;
+    // on a ground of its own, as cloth may lie behind it
+    const auto ground = background();
+    painter.fillRect(
+        QRectF(right - std::max(bar.pixels, 130.0) - 8, y - 30, std::max(bar.pixels, 130.0) + 16, 40),
+        QColor(ground[0], ground[1], ground[2], 190));
     painter.setPen(QPen(ink, 2));
     painter.drawLine(QPointF(right - bar.pixels, y), QPointF(right, y));
     painter.drawLine(QPointF(right - bar.pixels, y - 4), QPointF(right - bar.pixels, y + 4));
@@ -48,7 +53,7 @@ void ClothView::paint_notes(QPainter& painter, QSize size) {
   }
   // a broken cloth is never shown as good
   const ClothMoment& moment = session_.moment();
-  if (style_ == ClothStyle::yarn && moment.broken())
+  if (style_ == ClothStyle::yarn && session_.broken())
     banner(painter, size,
            tr("BROKEN: %1 of %2 interlacings. This is not what the notation knits.")
                .arg(moment.interlacings.intact)

@@ -16,21 +16,6 @@ namespace {
 
 constexpr int frame_ms = 33;
 
-// Whole repeats that make about the size that the file asks for, and no more than can be drawn quickly.
-std::array<int, 2> repeats_for(const Fabric& fabric, const Knitting* knitting) {
-  if (!fabric.periodic) return {1, 1};
-  const auto enough = [](int wanted, double per_cell) {
-    return std::clamp(static_cast<int>(std::lround(wanted / std::max(per_cell, 0.5))), 1, 24);
-  };
-  int wales = 8, courses = 8;
-  if (knitting) {
-    const FabricSettings& settings = knitting->program.settings;
-    if (settings.size_wales > 0) wales = std::min(settings.size_wales, 16);
-    if (settings.size_courses > 0) courses = std::min(settings.size_courses, 16);
-  }
-  return {enough(wales, fabric.wales), enough(courses, fabric.courses)};
-}
-
 }  // namespace
 
 ClothView::ClothView(Session& session, QWidget* parent) : QOpenGLWidget(parent), session_(session) {
@@ -60,6 +45,7 @@ ClothView::~ClothView() {
   makeCurrent();
   buffer_.reset();
   yarns_.reset();
+  moving_yarns_.reset();
   lines_.reset();
   doneCurrent();
 }
@@ -78,121 +64,6 @@ Bounds ClothView::bounds() const {
   }
   if (scene_) return scene_->bounds;
   return {{-5, -5, -1}, {5, 5, 1}};
-}
-
-// --- what is shown
-
-void ClothView::take_fabric() {
-  if (!session_.fabric()) {
-    drawn_ = nullptr;
-    scene_ = nullptr;
-    motion_ = nullptr;
-    motion_of_ = nullptr;
-    follows_ = true;
-    redraw();
-    return;
-  }
-  ask_for_scene();
-}
-
-// Pixels of a yarn's diameter, in steps: finer meshes are made when the camera comes nearer.
-double ClothView::wanted_detail() const {
-  const double pixels = height() * devicePixelRatioF() / std::max(camera_.height, 1e-6);
-  return std::clamp(std::exp2(std::round(std::log2(std::max(pixels, 1.0)))), 4.0, 32.0);
-}
-
-void ClothView::ask_for_scene() {
-  const std::shared_ptr<const Fabric> fabric = session_.fabric();
-  if (!fabric || style_ != ClothStyle::yarn) {
-    redraw();
-    return;
-  }
-  const bool at_work = session_.working();
-  SceneOptions options;
-  const Knitting* knitting = session_.moment().knitting.get();
-  repeats_ = options.repeats = repeats_for(*fabric, knitting);
-  detail_ = wanted_detail();
-  options.pixels_per_diameter = at_work ? std::min(detail_, 8.0) : detail_;
-  options.look.occlusion = !at_work;
-  options.look.fuzz = 0;
-  const Selection& chosen = session_.selection();
-  const std::vector<int> kin = session_.spans_at(chosen.at);
-  const std::vector<int> spans = chosen.span >= 0 ? std::vector<int>{chosen.span} : std::vector<int>{};
-  const auto relax = session_.moment().options;
-  const ModelOptions model = relax ? relax->model : ModelOptions();
-  // forces have a meaning in cloth that the yarn model holds
-  const bool forces_known = relax != nullptr;
-  const ColourBy by = !forces_known && (colour_by_ == ColourBy::tension || colour_by_ == ColourBy::contact)
-                          ? ColourBy::yarn
-                          : colour_by_;
-  const int serial = ++scenes_asked_;
-  scene_builder_.start([this, serial, fabric, options, spans, kin, model, by, at_work,
-                        repeats = repeats_](const std::atomic<bool>& cancelled) mutable {
-    std::shared_ptr<const YarnScene> scene;
-    ClothColours colours;
-    try {
-      colours = cloth_colours(*fabric, model, by, spans, kin);
-      options.colours = colours.segments;
-      if (!cancelled) scene = std::make_shared<const YarnScene>(yarn_scene(*fabric, options));
-    } catch (const std::exception&) {
-      scene = nullptr;  // the message of the moment says what is wrong with the fabric
-    }
-    QMetaObject::invokeMethod(
-        this,
-        [this, serial, fabric, scene, repeats, at_work, colours = std::move(colours)]() mutable {
-          scenes_taken_ = serial;
-          drawn_ = fabric;
-          take_scene(scene, std::move(colours), repeats, at_work);
-        },
-        Qt::QueuedConnection);
-  });
-}
-
-void ClothView::take_scene(std::shared_ptr<const YarnScene> scene, ClothColours colours,
-                           std::array<int, 2> repeats, bool coarse) {
-  if (!scene) return;
-  scene_ = std::move(scene);
-  colours_ = std::move(colours);
-  repeats_ = repeats;
-  coarse_ = coarse;
-  uploaded_ = false;
-  follow();
-  // the work ended meanwhile, or the camera is nearer now
-  if ((coarse_ && !session_.working()) || (!coarse_ && wanted_detail() != detail_)) ask_for_scene();
-  redraw();
-}
-
-// The loop model of the knitting that is shown, built aside.
-void ClothView::ask_for_motion() {
-  if (!session_.working() && coarse_ && scene_ && style_ == ClothStyle::yarn) ask_for_scene();
-  const auto knitting = session_.moment().knitting;
-  if (style_ == ClothStyle::yarn || !knitting || knitting == motion_of_) return;
-  motion_of_ = knitting;
-  motion_builder_.start([this, knitting, text = session_.document().text(),
-                         suffix = session_.document().suffix()](const std::atomic<bool>&) {
-    std::shared_ptr<LoopMotion> motion;
-    QString problem;
-    try {
-      // the piece as the file says it, as `render --style structure` draws it
-      Diagnostics diagnostics;
-      ClothRequest request;
-      request.text = text, request.suffix = suffix;
-      motion = std::make_shared<LoopMotion>(knit_text(request, {}, diagnostics), std::vector<PiecePlace>{});
-    } catch (const std::exception& fault) {
-      problem = QString::fromUtf8(fault.what());
-    }
-    QMetaObject::invokeMethod(
-        this,
-        [this, motion, problem] {
-          if (!problem.isEmpty()) emit session_.refused(problem);
-          motion_ = motion;
-          if (motion_ && style_ != ClothStyle::yarn) fit();
-          if (playing_) frame_timer_.start();
-          emit motion_changed();
-          redraw();
-        },
-        Qt::QueuedConnection);
-  });
 }
 
 void ClothView::set_style(ClothStyle style) {
@@ -306,6 +177,7 @@ void ClothView::initializeGL() {
   try {
     // a context of its own after the widget was put into another window
     yarns_ = std::make_unique<YarnRenderer>();
+    moving_yarns_ = std::make_unique<YarnRenderer>();
     lines_ = std::make_unique<StructurePainter>();
     uploaded_ = false;
     buffer_.reset();
@@ -328,6 +200,7 @@ void ClothView::draw_scene(int width, int height, double line_pixels) {
   if (style_ == ClothStyle::yarn) {
     if (scene_ && !uploaded_) {
       yarns_->upload(*scene_);
+      if (moving_scene_) moving_yarns_->upload(*moving_scene_);
       uploaded_ = true;
     }
     DrawStyle style;
@@ -335,7 +208,7 @@ void ClothView::draw_scene(int width, int height, double line_pixels) {
     style.shadows = !moving_ && !coarse_;
     style.table = false;
     if (scene_)
-      yarns_->draw(camera_, style, width, height);
+      (moving_ && moving_scene_ ? moving_yarns_ : yarns_)->draw(camera_, style, width, height);
     else
       lines_->clear(background(), width, height);
   } else {

@@ -69,7 +69,7 @@ class ClothView : public QOpenGLWidget {
   struct Drag {
     MouseAct act = MouseAct::none;
     QPointF start, last;
-    bool moved = false, pulls = false, pulls_edge = false;
+    bool moved = false, pulls = false, pulls_edge = false, pulls_yarn = false;
     StretchDirection edge = StretchDirection::course;
     double edge_side = 1;  // +1: right or top edge
     Vec3 held;             // place that is pulled
@@ -78,8 +78,13 @@ class ClothView : public QOpenGLWidget {
   void moved_by_hand();
   void take_fabric();
   void ask_for_scene();
-  void take_scene(std::shared_ptr<const YarnScene> scene, ClothColours colours, std::array<int, 2> repeats,
-                  bool coarse);
+  struct BuiltScene {
+    std::shared_ptr<const YarnScene> scene, moving;
+    ClothColours colours;
+    std::array<int, 2> repeats{1, 1};
+    bool coarse = false;
+  };
+  void take_scene(BuiltScene built);
   void ask_for_motion();
   void tick();
   void draw_scene(int width, int height, double line_pixels);
@@ -88,7 +93,8 @@ class ClothView : public QOpenGLWidget {
   void paint_notes(QPainter& painter, QSize size);
   void paint_legend(QPainter& painter, QSize size);
   void choose_at(const QPointF& at);
-  void begin_pull(const QPointF& at);
+  void begin_pull(const QPointF& at, bool at_yarn);
+  void begin_yarn_pull(const QPointF& at);
   void pull(const QPointF& at);
   void end_pull();
   double aspect() const;
@@ -112,9 +118,10 @@ class ClothView : public QOpenGLWidget {
   std::unique_ptr<QOpenGLFramebufferObject> buffer_;
   bool buffer_is_current_ = false;
   double moving_frame_ms_ = 0;
-  std::unique_ptr<YarnRenderer> yarns_;
+  std::unique_ptr<YarnRenderer> yarns_, moving_yarns_;
   std::unique_ptr<StructurePainter> lines_;
-  std::shared_ptr<const YarnScene> scene_;
+  std::shared_ptr<const YarnScene> scene_,
+      moving_scene_;  // of a coarser mesh, for while it moves; may be none
   bool uploaded_ = false, coarse_ = false;
   int scenes_asked_ = 0, scenes_taken_ = 0;
   ClothColours colours_;

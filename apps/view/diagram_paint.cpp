@@ -92,9 +92,13 @@ void DiagramView::paintEvent(QPaintEvent* event) {
 
 void DiagramView::paint_pass(QPainter& painter, std::size_t p) {
   const NeedleDiagram& diagram = session_.diagram();
-  const DiagramPass& pass = diagram.passes[p];
+  DiagramPass pass = diagram.passes[p];
+  // what the carriage has not come to yet
+  for (auto* row : {&pass.front, &pass.rear})
+    for (DiagramNeedle& needle : *row)
+      if (begun(p) && !done(p, needle.slot)) needle.operation = NeedleOperation::unused;
   const double usual = painter.opacity();
-  if (last_pass_ >= 0 && static_cast<int>(p) > last_pass_) painter.setOpacity(0.18);
+  if (!begun(p)) painter.setOpacity(0.18);
   const double left = dot(diagram.first_needle - 0.6, 0).x(),
                right = dot(diagram.first_needle + diagram.wales - 0.4, 0).x();
   painter.setPen(QPen(QColor(228, 226, 218), 1));
@@ -171,18 +175,24 @@ void DiagramView::paint_yarn(QPainter& painter, const DiagramPass& pass, const R
   for (std::size_t strand = 0; strand < pass.yarns.size(); ++strand) {
     const double shift = 0.11 * static_cast<double>(strand), way = (row.front + row.rear) / 2 + shift;
     QPainterPath path(dot(stops.front().slot - 0.75, way));
-    for (const Stop& stop : stops) {
+    for (std::size_t i = 0; i < stops.size(); ++i) {
+      const Stop& stop = stops[i];
       const double s = stop.slot, needle = stop.front ? row.front : row.rear, out = stop.front ? 1 : -1;
-      path.lineTo(dot(s - 0.5, way));
-      if (stop.operation == NeedleOperation::missed) continue;
-      const double half = loop_half - 0.9 * shift, end = needle + out * (loop_depth - 0.9 * shift);
-      // a stitch's legs cross below the needle, those of a tuck stand apart
-      const double a = stop.operation == NeedleOperation::tuck ? -half : half, neck = needle - out * 0.24;
-      const double leg = needle + out * 0.04, belly = needle + out * 0.22;
-      path.cubicTo(dot(s - 0.05, way), dot(s + a, neck), dot(s + a, leg));
-      path.cubicTo(dot(s + a, belly), dot(s + 0.55 * a, end), dot(s, end));
-      path.cubicTo(dot(s - 0.55 * a, end), dot(s - a, belly), dot(s - a, leg));
-      path.cubicTo(dot(s - a, neck), dot(s + 0.05, way), dot(s + 0.5, way));
+      // half-way to the neighbours, which stand half a pitch apart where the beds are gated so
+      const double before = i == 0 ? 0.5 : std::min(0.5, (s - stops[i - 1].slot) / 2);
+      const double after = i + 1 == stops.size() ? 0.5 : std::min(0.5, (stops[i + 1].slot - s) / 2);
+      path.lineTo(dot(s - before, way));
+      if (stop.operation != NeedleOperation::missed) {
+        const double half = loop_half - 0.9 * shift, end = needle + out * (loop_depth - 0.9 * shift);
+        // a stitch's legs cross below the needle, those of a tuck stand apart
+        const double a = stop.operation == NeedleOperation::tuck ? -half : half, neck = needle - out * 0.24;
+        const double leg = needle + out * 0.04, belly = needle + out * 0.22;
+        path.cubicTo(dot(s - 0.1 * before, way), dot(s + a, neck), dot(s + a, leg));
+        path.cubicTo(dot(s + a, belly), dot(s + 0.55 * a, end), dot(s, end));
+        path.cubicTo(dot(s - 0.55 * a, end), dot(s - a, belly), dot(s - a, leg));
+        path.cubicTo(dot(s - a, neck), dot(s + 0.1 * after, way), dot(s + after, way));
+      }
+      path.lineTo(dot(s + after, way));
     }
     path.lineTo(dot(stops.back().slot + 0.75, way));
     const QColor colour = yarn_colour(pass.yarns[strand]);

@@ -21,8 +21,11 @@ class DiagramView : public QAbstractScrollArea {
   DiagramTool tool() const { return tool_; }
   // Where a needle is drawn, in the viewport; for tests as well.
   QPointF needle_place(std::size_t pass, bool rear, int wale) const;
-  // Draws passes up to this one in full and the rest faintly (knitting step by step); -1: all.
-  void set_last_pass(int pass);
+  // Knitting needle by needle: how many acts there are, where the k-th is written, and drawing so many of
+  // them in full and the rest faintly (-1: all).
+  int acts() const { return static_cast<int>(acts_.size()); }
+  SourceLocation act_place(int k) const { return acts_[static_cast<std::size_t>(k)].at; }
+  void show_acts(int count);
 
  public slots:
   void zoom(double factor);
@@ -53,6 +56,11 @@ class DiagramView : public QAbstractScrollArea {
     int line = -1;               // of the notation; -1: follows from it
     std::size_t pass = 0;        // of that line
   };
+  struct Act {
+    std::size_t pass = 0;
+    double slot = 0;
+    SourceLocation at;
+  };
   struct Place {
     std::size_t pass = 0;
     bool rear = false;
@@ -63,6 +71,9 @@ class DiagramView : public QAbstractScrollArea {
   void keep_in_place(std::optional<Place>& place, const std::vector<Row>& before) const;
   std::optional<std::size_t> line_at_cursor();  // says why there is none
   void bars();
+  void list_acts();
+  bool begun(std::size_t pass) const;
+  bool done(std::size_t pass, double slot) const;
   std::optional<Place> place_at(const QPointF& at) const;
   const DiagramNeedle& needle(const Place& place) const;
   void apply_tool(const Place& place);
@@ -82,7 +93,8 @@ class DiagramView : public QAbstractScrollArea {
   std::vector<Row> rows_;
   double height_ = 0, width_ = 0;  // in pitches
   double least_slot_ = 0;
-  int last_pass_ = -1;
+  std::vector<Act> acts_;  // in knitting order
+  int shown_acts_ = -1;
   std::optional<Place> cursor_, anchor_, painted_;
   CopiedNeedles copied_;
 };

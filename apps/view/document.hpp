@@ -32,6 +32,7 @@ class Document {
   void open(const std::filesystem::path& path);
   void open_text(std::string text, std::string_view suffix, const std::filesystem::path& path = {});
   void save(const std::filesystem::path& path);  // throws FileError; the document has that path then
+  void mark_saved() { saved_place_ = place_; }   // the disk has this text already
   // Text that was found after a crash: as open_text, but the document counts as changed.
   void recover(std::string text, const std::filesystem::path& path);
 

@@ -1,12 +1,15 @@
 // Yarns, lengths and machine of a fabric file, changed in its header lines.
+#include <QColorDialog>
 #include <QComboBox>
 #include <QCompleter>
 #include <QDoubleSpinBox>
 #include <QFormLayout>
 #include <QGroupBox>
 #include <QLineEdit>
+#include <QPushButton>
 #include <QScrollArea>
 #include <QVBoxLayout>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -30,12 +33,28 @@ std::optional<double> leading_number(const std::string& value, const QString& un
   return number;
 }
 
+// A number of a yarn in the unit of the trade, with a range that no knitting yarn leaves.
+struct YarnField {
+  const char* name;
+  const char* unit;
+  double low, high, step;
+  std::optional<double> YarnData::*value;
+  const char* tip;
+};
+constexpr std::array<YarnField, 5> fields{
+    {{"Linear density", "tex", 1, 20000, 5, &YarnData::linear_density_tex, "Mass per length: 1 tex = 1 g/km"},
+     {"Diameter", "mm", 0.05, 20, 0.05, &YarnData::diameter_mm, "Outer diameter of the soft yarn"},
+     {"Bending", "mN mm\u00b2", 0.01, 10000, 1, &YarnData::bend_stiffness_mN_mm2, "Bending stiffness"},
+     {"Stretching", "cN", 1, 1e6, 100, &YarnData::stretch_stiffness_cN, "Force that would double its length"},
+     {"Friction", "", 0, 2, 0.05, &YarnData::friction_coefficient, "Coefficient of yarn on yarn"}}};
+
 }  // namespace
 
 FabricPanel::FabricPanel(Session& session, QWidget* parent) : QWidget(parent), session_(session) {
   auto* outer = new QVBoxLayout(this);
   outer->setContentsMargins(0, 0, 0, 0);
   auto* scroll = new QScrollArea(this);
+  form_ = scroll;
   scroll->setWidgetResizable(true);
   scroll->setFrameShape(QFrame::NoFrame);
   outer->addWidget(scroll);
@@ -126,6 +145,7 @@ void FabricPanel::set_header(const QString& name, const QString& value) {
 void FabricPanel::build_yarns() {
   while (yarn_form_->rowCount() > 0) yarn_form_->removeRow(0);
   yarn_edits_.clear();
+  yarn_fields_.clear();
   QStringList names;
   for (const Material& material : materials()) names << QString::fromStdString(material.name);
   for (const std::string& yarn : yarn_names_) {
@@ -145,11 +165,68 @@ void FabricPanel::build_yarns() {
       }
       set_header(QStringLiteral("Yarn-") + QString::fromStdString(yarn), edit->text());
     });
+    add_yarn_fields(yarn_edits_.size() - 1);
   }
 }
 
+void FabricPanel::add_yarn_fields(std::size_t yarn) {
+  YarnFields row;
+  for (const YarnField& field : fields) {
+    auto* box = new QDoubleSpinBox(this);
+    box->setObjectName(QLatin1String(field.name) + QLatin1Char(' ') +
+                       QString::fromStdString(yarn_names_[yarn]));
+    box->setRange(field.low, field.high);
+    box->setSingleStep(field.step);
+    box->setDecimals(field.step < 1 ? 3 : 2);
+    if (field.unit[0] != '\0') box->setSuffix(QLatin1Char(' ') + QString::fromUtf8(field.unit));
+    box->setToolTip(tr(field.tip));
+    box->setKeyboardTracking(false);
+    yarn_form_->addRow(tr(field.name), box);
+    row.numbers.push_back(box);
+    connect(box, &QDoubleSpinBox::valueChanged, this, [this, yarn, value = field.value](double number) {
+      change_yarn(yarn, [value, number](YarnData& of) { of.*value = std::round(number * 1e4) / 1e4; });
+    });
+  }
+  row.colour = new QPushButton(tr("Colour \u2026"), this);
+  yarn_form_->addRow(tr("Colour"), row.colour);
+  connect(row.colour, &QPushButton::clicked, this, [this, yarn] {
+    const QColor chosen = QColorDialog::getColor(
+        Qt::white, this, tr("Colour of yarn %1").arg(QString::fromStdString(yarn_names_[yarn])));
+    if (chosen.isValid())
+      change_yarn(yarn, [&chosen](YarnData& of) { of.colour = chosen.name().toStdString(); });
+  });
+  yarn_fields_.push_back(std::move(row));
+}
+
+void FabricPanel::change_yarn(std::size_t yarn, const std::function<void(YarnData&)>& change) {
+  if (filling_) return;
+  const std::string header = "Yarn-" + yarn_names_[yarn];
+  Diagnostics diagnostics;
+  YarnData of;
+  read_yarn(header_value(session_.document().text(), header), {}, of, diagnostics);
+  if (!diagnostics.ok()) return;  // the text says what is wrong
+  change(of);
+  set_header(QString::fromStdString(header), QString::fromStdString(yarn_value(of)));
+}
+
+// Unstated numbers stand at the low end and are not written until they are changed.
+void FabricPanel::show_yarn_fields(std::size_t yarn) {
+  const YarnData& of = session_.notation()->yarns[yarn].data;
+  for (std::size_t k = 0; k < fields.size(); ++k) {
+    QDoubleSpinBox* box = yarn_fields_[yarn].numbers[k];
+    if (!box->hasFocus()) box->setValue((of.*fields[k].value).value_or(box->minimum()));
+  }
+  if (!of.colour.empty())
+    yarn_fields_[yarn].colour->setStyleSheet(
+        QStringLiteral("background: %1; color: %2")
+            .arg(QString::fromStdString(of.colour),
+                 QColor(QString::fromStdString(of.colour)).lightness() > 128 ? QStringLiteral("black")
+                                                                             : QStringLiteral("white")));
+}
+
 void FabricPanel::show_settings() {
-  setEnabled(!session_.document().read_only());
+  // knitout's headers are the text's own
+  form_->setVisible(!session_.document().read_only());
   if (session_.document().read_only()) return;
   const auto& notation = session_.notation();
   if (!notation) return;  // errors: fields keep what they had
@@ -166,6 +243,7 @@ void FabricPanel::show_settings() {
   };
   for (std::size_t y = 0; y < yarn_names_.size(); ++y)
     if (!yarn_edits_[y]->hasFocus()) yarn_edits_[y]->setText(value("Yarn-" + yarn_names_[y]));
+  for (std::size_t y = 0; y < yarn_names_.size(); ++y) show_yarn_fields(y);
   for (const auto& [header, box] : numbers_) {
     const std::string written = header_value(text, header);
     const auto number = leading_number(written, box->suffix().trimmed());

@@ -34,7 +34,12 @@ int main(int argc, char** argv) {
   if (!files.isEmpty()) window.open(files.front());
   // after the window is there, so that the start is not held up
   QTimer::singleShot(0, &window, [&window, named = !files.isEmpty()] {
-    if (!named) window.offer_recovery();
+    if (named) return;
+    window.offer_recovery();
+    QSettings settings;
+    if (settings.value(QStringLiteral("toured")).toBool()) return;
+    settings.setValue(QStringLiteral("toured"), true);
+    window.start_tour();
   });
   return QApplication::exec();
 }

@@ -1,15 +1,10 @@
 #include "main_window.hpp"
 
 #include <QApplication>
-#include <QCloseEvent>
 #include <QDockWidget>
-#include <QFileDialog>
-#include <QFileInfo>
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QLineEdit>
-#include <QMessageBox>
-#include <QMimeData>
 #include <QPalette>
 #include <QProgressBar>
 #include <QPushButton>
@@ -20,11 +15,6 @@
 #include <QVBoxLayout>
 #include <algorithm>
 #include <cmath>
-
-#include "outputs/atomic_file.hpp"
-#include "outputs/write_diagram_svg.hpp"
-#include "outputs/write_fabric.hpp"
-#include "outputs/write_json.hpp"
 
 namespace loopwright {
 
@@ -52,6 +42,9 @@ MainWindow::MainWindow(const QString& autosave_folder, QWidget* parent)
   autosave_timer_.setInterval(1000);
   connect(&autosave_timer_, &QTimer::timeout, this, [this] { autosave_.keep(session_.document()); });
   connect(&session_, &Session::text_changed, &autosave_timer_, qOverload<>(&QTimer::start));
+  // another editor's changes of the open file are taken at once, unless there are own ones
+  connect(&watcher_, &QFileSystemWatcher::fileChanged, this,
+          [this] { QTimer::singleShot(100, this, &MainWindow::take_changed_file); });
   resize(1280, 800);
   const QSettings settings;
   restoreGeometry(settings.value(QStringLiteral("geometry")).toByteArray());
@@ -230,146 +223,6 @@ void MainWindow::say(const QString& what) {
   QTimer::singleShot(8000, hint_, [label = hint_, what] {
     if (label->text() == what) label->hide();
   });
-}
-
-// --- files
-
-bool MainWindow::open(const QString& path) {
-  try {
-    session_.document().open(path.toStdString());
-  } catch (const FileError& fault) {
-    QMessageBox::warning(this, tr("Cannot open"), QString::fromUtf8(fault.what()));
-    return false;
-  }
-  remember(path);
-  show_title();
-  return true;
-}
-
-bool MainWindow::save_to(const QString& path) {
-  try {
-    session_.document().save(path.toStdString());
-  } catch (const FileError& fault) {
-    QMessageBox::warning(this, tr("Cannot save"), QString::fromUtf8(fault.what()));
-    return false;
-  }
-  autosave_.forget();
-  remember(path);
-  show_title();
-  return true;
-}
-
-bool MainWindow::save() {
-  const auto& path = session_.document().path();
-  return path.empty() ? save_as() : save_to(QString::fromStdString(path.string()));
-}
-
-bool MainWindow::save_as() {
-  const bool fabric = session_.document().kind() == DocumentKind::fabric;
-  const QString path =
-      QFileDialog::getSaveFileName(this, tr("Save as"), QString::fromStdString(session_.document().name()),
-                                   fabric ? tr("Fabric files (*.verm)") : tr("Knitout (*.k *.knitout)"));
-  return !path.isEmpty() && save_to(path);
-}
-
-bool MainWindow::may_leave() {
-  if (!session_.document().changed()) return true;
-  const auto answer = QMessageBox::question(
-      this, tr("Not saved"),
-      tr("%1 has changes that are not saved.").arg(QString::fromStdString(session_.document().name())),
-      QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel);
-  if (answer == QMessageBox::Save) return save();
-  return answer == QMessageBox::Discard;
-}
-
-void MainWindow::export_to(const QString& path) {
-  const std::filesystem::path file = path.toStdString();
-  const QString suffix = QFileInfo(path).suffix().toLower();
-  if (suffix == QLatin1String("png")) {
-    if (!cloth_->picture(cloth_->size() * 2).save(path))
-      throw FileError(file.string() + ": cannot be written");
-    return;
-  }
-  if (suffix == QLatin1String("svg")) {
-    write_diagram_svg(file, session_.diagram());
-    return;
-  }
-  if (!session_.fabric()) throw std::invalid_argument("there is no cloth to export yet");
-  if (session_.moment().broken())
-    throw std::invalid_argument(
-        "the cloth is broken: it is not what the notation knits, and is not exported");
-  if (suffix == QLatin1String("json")) {
-    if (!session_.moment().relaxed) throw std::invalid_argument("only cloth at rest is measured");
-    write_json(file, results(assess(session_.moment().relaxed->fabric), *session_.moment().relaxed));
-    return;
-  }
-  const auto& moment = session_.moment();
-  if (moment.relaxed && moment.options && session_.fabric() == moment.fabric)
-    write_fabric(file, saved_state(*moment.relaxed, *moment.options, 1));
-  else
-    write_fabric(file, *session_.fabric());
-}
-
-void MainWindow::ask_export() {
-  const QString path = QFileDialog::getSaveFileName(
-      this, tr("Export"), QString(),
-      tr("Picture of the cloth (*.png);;Needle diagram (*.svg);;Measurements (*.json);;State (*.h5);;"
-         "glTF (*.glb);;OBJ (*.obj);;VTK (*.vtp);;STEP (*.step);;Yarn curves (*.bcc *.yarns)"));
-  if (path.isEmpty()) return;
-  try {
-    export_to(path);
-    say(tr("Written: %1").arg(path));
-  } catch (const std::exception& fault) {
-    QMessageBox::warning(this, tr("Cannot export"), QString::fromUtf8(fault.what()));
-  }
-}
-
-void MainWindow::offer_recovery() {
-  while (const auto left = autosave_.left_behind()) {
-    const QString name = left->path.empty() ? tr("a new file") : QString::fromStdString(left->path.string());
-    const auto answer = QMessageBox::question(
-        this, tr("Recover"), tr("Changes to %1 were not saved when the program ended. Open them?").arg(name));
-    if (answer == QMessageBox::Yes) {
-      session_.document().recover(left->text, left->path);
-      show_title();
-      autosave_.keep(session_.document());
-    }
-    Autosave::discard(*left);
-    if (answer == QMessageBox::Yes) return;
-  }
-}
-
-void MainWindow::remember(const QString& path) {
-  QSettings settings;
-  QStringList recent = settings.value(QStringLiteral("recent")).toStringList();
-  const QString full = QFileInfo(path).absoluteFilePath();
-  recent.removeAll(full);
-  recent.prepend(full);
-  while (recent.size() > 10) recent.removeLast();
-  settings.setValue(QStringLiteral("recent"), recent);
-}
-
-void MainWindow::closeEvent(QCloseEvent* event) {
-  if (!may_leave()) {
-    event->ignore();
-    return;
-  }
-  QSettings settings;
-  settings.setValue(QStringLiteral("geometry"), saveGeometry());
-  settings.setValue(QStringLiteral("docks"), saveState());
-  autosave_timer_.stop();
-  autosave_.forget();
-  session_.cancel();
-  event->accept();
-}
-
-void MainWindow::dragEnterEvent(QDragEnterEvent* event) {
-  const QList<QUrl> urls = event->mimeData()->urls();
-  if (urls.size() == 1 && urls.front().isLocalFile()) event->acceptProposedAction();
-}
-
-void MainWindow::dropEvent(QDropEvent* event) {
-  if (may_leave()) open(event->mimeData()->urls().front().toLocalFile());
 }
 
 void MainWindow::set_dark(bool dark) {

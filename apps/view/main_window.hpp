@@ -1,5 +1,6 @@
 // The window: menus, docks and status around the cloth.
 #pragma once
+#include <QFileSystemWatcher>
 #include <QMainWindow>
 #include <QTimer>
 
@@ -29,6 +30,7 @@ class MainWindow : public QMainWindow {
   bool save_to(const QString& path);
   void export_to(const QString& path);  // by the suffix; throws what the writers throw
   void offer_recovery();
+  void start_tour();
 
   Session& session() { return session_; }
   ClothView& cloth() { return *cloth_; }
@@ -63,11 +65,13 @@ class MainWindow : public QMainWindow {
   bool save_as();
   void ask_export();
   void say(const QString& what);
-  void start_tour();
+  void watch();
+  void take_changed_file();
 
   Session session_;
   Autosave autosave_;
   QTimer autosave_timer_;
+  QFileSystemWatcher watcher_;
   ClothView* cloth_ = nullptr;
   NotationEditor* editor_ = nullptr;
   DiagramView* diagram_ = nullptr;

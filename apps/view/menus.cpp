@@ -17,6 +17,7 @@
 #include <QToolBar>
 #include <QVBoxLayout>
 #include <QWizard>
+#include <algorithm>
 
 #include "main_window.hpp"
 
@@ -286,10 +287,10 @@ void MainWindow::build_diagram_bar() {
     connect(action, &QAction::triggered, diagram_, [this, by = factor] { diagram_->zoom(by); });
   }
 
-  // knitting pass by pass
+  // knitting needle by needle
   auto* slider = new QSlider(Qt::Horizontal, paper);
-  slider->setObjectName(QStringLiteral("passes"));
-  slider->setToolTip(tr("Knits the piece pass by pass"));
+  slider->setObjectName(QStringLiteral("acts"));
+  slider->setToolTip(tr("Knits the piece needle by needle; Page Up and Page Down take a course"));
   box->addWidget(slider);
   hint_ = new QLabel(paper);
   hint_->setObjectName(QStringLiteral("hint"));
@@ -298,17 +299,14 @@ void MainWindow::build_diagram_bar() {
   hint_->hide();
   box->addWidget(hint_);
   connect(&session_, &Session::reading_changed, slider, [this, slider] {
-    const int passes = static_cast<int>(session_.diagram().passes.size());
     const QSignalBlocker quiet(slider);
-    slider->setRange(0, passes);
-    slider->setValue(passes);
-    diagram_->set_last_pass(-1);
+    slider->setRange(0, diagram_->acts());
+    slider->setPageStep(std::max(1, session_.diagram().wales));
+    slider->setValue(diagram_->acts());
   });
-  connect(slider, &QSlider::valueChanged, this, [this, slider](int passes) {
-    diagram_->set_last_pass(passes == slider->maximum() ? -1 : passes - 1);
-    const auto& all = session_.diagram().passes;
-    if (passes > 0 && passes <= static_cast<int>(all.size()))
-      editor_->go_to(all[static_cast<std::size_t>(passes - 1)].at);
+  connect(slider, &QSlider::valueChanged, this, [this](int count) {
+    diagram_->show_acts(count);
+    if (count > 0 && count <= diagram_->acts()) editor_->go_to(diagram_->act_place(count - 1));
   });
 }
 
@@ -322,7 +320,8 @@ void MainWindow::build_help_menu() {
            "(FreeCAD) or "
            "turns (Blender); right drag turns. 1 front, 2 left, 3 top, 4 corner, 5 back, 0 or double click "
            "fits. "
-           "Drag an edge of cloth at rest to stretch it; in the structure style drag a binding point.<br><br>"
+           "Drag an edge of cloth at rest to stretch it, Ctrl+drag a yarn to pull it; in the structure style "
+           "drag a binding point.<br><br>"
            "<b>Diagram</b>: arrows move, letters (g e v n . - t T s S d D) work the needle, Shift+arrows "
            "select, "
            "Ctrl+C, Ctrl+V, Ctrl+R repeat, Insert a course, Shift+Insert a wale.<br><br>"

@@ -9,6 +9,7 @@ class QDoubleSpinBox;
 class QFormLayout;
 class QLabel;
 class QLineEdit;
+class QPushButton;
 class QSlider;
 class QTreeWidget;
 
@@ -66,17 +67,27 @@ class FabricPanel : public QWidget {
  private:
   void show_settings();
   void build_yarns();
+  void add_yarn_fields(std::size_t yarn);
+  void show_yarn_fields(std::size_t yarn);
+  // Reads a yarn's header, lets `change` change its data, writes it back.
+  void change_yarn(std::size_t yarn, const std::function<void(YarnData&)>& change);
   void set_header(const QString& name, const QString& value);
   QDoubleSpinBox* number_row(QFormLayout* form, const QString& label, const char* header, double low,
                              double high, double step, const QString& unit, const QString& tip);
   Session& session_;
   bool filling_ = false;
+  QWidget* form_;
   QFormLayout* yarn_form_;
   std::vector<std::pair<const char*, QDoubleSpinBox*>> numbers_;
   QComboBox *edges_, *gating_;
   QLineEdit *name_, *size_;
   std::vector<std::string> yarn_names_;
   std::vector<QLineEdit*> yarn_edits_;
+  struct YarnFields {
+    std::vector<QDoubleSpinBox*> numbers;  // in the order of the fields of yarn_fields()
+    QPushButton* colour = nullptr;
+  };
+  std::vector<YarnFields> yarn_fields_;
 };
 
 // A stretch test by hand: a slider, and the curve as it comes.

@@ -83,6 +83,9 @@ void Session::start_cloth(std::size_t most_loops) {
   request.most_loops = most_loops;
   const int serial = ++serial_;
   stretch_ = nullptr;
+  pull_ = nullptr;
+  pulled_ = nullptr;
+  broken_pass_throughs_ = 0;
   stretch_points_.clear();
   fabric_is_current_ = false;
   working_ = true;
@@ -193,35 +196,58 @@ void Session::stretch_to(StretchDirection direction, double strain) {
     if (!stretch_ || stretch_->direction() != direction) {
       stretch_ = std::make_shared<StretchSession>(*moment_.relaxed, *moment_.options, direction);
       stretch_points_ = {stretch_->point()};
+      pull_ = nullptr;
+      pulled_ = nullptr;
     }
   } catch (const std::invalid_argument& fault) {
     emit refused(QString::fromUtf8(fault.what()));
     return;
   }
+  work_by_hand([this, strain, session = stretch_](int serial, const std::atomic<bool>& cancelled) {
+    session->options().on_progress = [&](const RelaxProgress&) { return !cancelled; };
+    session->go_to(strain, [&](const StretchPoint& point) {
+      if (!session->reached().stopped)
+        show_by_hand(
+            serial,
+            {std::make_shared<const Fabric>(session->reached().fabric), point.pass_throughs, point, {}});
+      return !cancelled;
+    });
+  });
+}
+
+void Session::take_hold(int yarn, double t) {
+  if (!moment_.relaxed || !moment_.options || stretch_) return;
+  // goes on from what an earlier pull left
+  const RelaxResult& from = pulled_ ? *pulled_ : *moment_.relaxed;
+  pull_ = std::make_shared<PullSession>(from, *moment_.options, yarn, t);
+}
+
+void Session::pull(const Vec3& force) {
+  if (!pull_) return;
+  work_by_hand([this, force, session = pull_](int serial, const std::atomic<bool>& cancelled) {
+    double shown = now_s();
+    const Fabric start = session->reached().fabric;
+    session->options().on_progress = [&](const RelaxProgress& progress) {
+      if (progress.state && now_s() - shown > seconds_between_moments) {
+        shown = now_s();
+        show_by_hand(serial, {std::make_shared<const Fabric>(with_state(start, *progress.state)), 0, {}, {}});
+      }
+      return !cancelled;
+    };
+    if (!session->pull(force)) return;  // told to stop: another pull goes on from here
+    const auto reached = std::make_shared<const RelaxResult>(session->reached());
+    show_by_hand(serial,
+                 {std::make_shared<const Fabric>(reached->fabric), reached->pass_throughs, {}, reached});
+  });
+}
+
+void Session::work_by_hand(const std::function<void(int serial, const std::atomic<bool>& cancelled)>& work) {
   const int serial = ++serial_;
   working_ = true;
   working_since_ = now_s();
-  worker_.start([this, serial, strain, session = stretch_](const std::atomic<bool>& cancelled) {
-    session->options().on_progress = [&](const RelaxProgress&) { return !cancelled; };
+  worker_.start([this, serial, work](const std::atomic<bool>& cancelled) {
     try {
-      session->go_to(strain, [&](const StretchPoint& point) {
-        const auto cloth = std::make_shared<const Fabric>(session->reached().fabric);
-        const bool stopped = session->reached().stopped;
-        QMetaObject::invokeMethod(
-            this,
-            [this, serial, point, cloth, stopped] {
-              if (serial != serial_ || stopped) return;
-              fabric_ = cloth;
-              moment_.interlacings.expected = point.interlacings;
-              moment_.interlacings.intact = point.interlacings_intact;
-              stretch_points_.push_back(point);
-              emit stretch_changed();
-              emit fabric_changed();
-              emit moment_changed();
-            },
-            Qt::QueuedConnection);
-        return !cancelled;
-      });
+      work(serial, cancelled);
     } catch (const std::exception& fault) {
       const QString why = QString::fromUtf8(fault.what());
       QMetaObject::invokeMethod(
@@ -238,12 +264,36 @@ void Session::stretch_to(StretchDirection direction, double strain) {
   });
 }
 
+// From the worker's thread.
+void Session::show_by_hand(int serial, HandMoment moment) {
+  const InterlacingCheck check = check_interlacings(*moment.cloth);
+  QMetaObject::invokeMethod(
+      this,
+      [this, serial, moment = std::move(moment), check] {
+        if (serial != serial_) return;
+        fabric_ = moment.cloth;
+        if (moment.pulled) pulled_ = moment.pulled;
+        moment_.interlacings = check;
+        broken_pass_throughs_ += moment.pass_throughs;
+        if (moment.point) {
+          stretch_points_.push_back(*moment.point);
+          emit stretch_changed();
+        }
+        emit fabric_changed();
+        emit moment_changed();
+      },
+      Qt::QueuedConnection);
+}
+
 void Session::forget_stretch() {
-  if (!stretch_ || !moment_.relaxed) return;
+  if ((!stretch_ && !pull_) || !moment_.relaxed) return;
   ++serial_;
   worker_.cancel();
   working_ = false;
   stretch_ = nullptr;
+  pull_ = nullptr;
+  pulled_ = nullptr;
+  broken_pass_throughs_ = 0;
   stretch_points_.clear();
   fabric_ = moment_.fabric;
   if (fabric_) moment_.interlacings = check_interlacings(*fabric_);

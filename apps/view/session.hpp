@@ -9,6 +9,7 @@
 #include "document.hpp"
 #include "latest_only.hpp"
 #include "notation/needle_diagram.hpp"
+#include "pull_session.hpp"
 #include "stretch_session.hpp"
 
 namespace loopwright {
@@ -36,6 +37,8 @@ class Session : public QObject {
   // Of the text as it is: of the notation at once, of machine and geometry when they have been asked.
   const Diagnostics& diagnostics() const { return diagnostics_; }
   const Selection& selection() const { return selection_; }
+  // Whether what is shown may not be taken for the cloth that the notation knits.
+  bool broken() const { return moment_.broken() || broken_pass_throughs_ > 0; }
   bool working() const { return working_; }
   double working_seconds() const;
 
@@ -58,6 +61,9 @@ class Session : public QObject {
   void stretch_to(StretchDirection direction, double strain);
   const std::vector<StretchPoint>& stretch_points() const { return stretch_points_; }
   void forget_stretch();  // shows the cloth at rest again
+  // Takes hold of a yarn of the cloth at rest, pulls it (force in B/d^2, zero lets go); the cloth follows.
+  void take_hold(int yarn, double t);
+  void pull(const Vec3& force);
 
  public slots:
   void make_cloth_anew();  // as the choice of piece says, live limits respected
@@ -79,6 +85,15 @@ class Session : public QObject {
   void read_text();
   void start_cloth(std::size_t most_loops);
   void take_moment(int serial, ClothMoment moment);
+  // Runs a hand's work in the worker; it answers the cloth that it came to.
+  void work_by_hand(const std::function<void(int serial, const std::atomic<bool>& cancelled)>& work);
+  struct HandMoment {
+    std::shared_ptr<const Fabric> cloth;
+    int pass_throughs = 0;
+    std::optional<StretchPoint> point;          // of a stretch test
+    std::shared_ptr<const RelaxResult> pulled;  // the end of a pull
+  };
+  void show_by_hand(int serial, HandMoment moment);
 
   Document document_;
   std::shared_ptr<const Vermiculation> notation_;
@@ -91,7 +106,10 @@ class Session : public QObject {
   std::shared_ptr<const Fabric> fabric_;
   std::vector<StretchPoint> stretch_points_;
   std::shared_ptr<StretchSession> stretch_;
-  int serial_ = 0;  // of the work whose moments count
+  std::shared_ptr<PullSession> pull_;
+  std::shared_ptr<const RelaxResult> pulled_;  // what the last pull came to
+  int broken_pass_throughs_ = 0;               // of what the hand did to the cloth
+  int serial_ = 0;                             // of the work whose moments count
   double working_since_ = 0;
   LatestOnly worker_;  // last: its thread uses the rest
 };

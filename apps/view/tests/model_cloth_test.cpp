@@ -11,6 +11,7 @@
 #include "../loop_motion.hpp"
 #include "../orbit.hpp"
 #include "../picking.hpp"
+#include "../pull_session.hpp"
 #include "../stretch_session.hpp"
 #include "outputs/yarn_scene.hpp"
 
@@ -109,6 +110,28 @@ TEST(StretchSession, FollowsTheStretchTestOfTheCommand) {
   EXPECT_EQ(by_hand.interlacings_intact, by_hand.interlacings);
   // and back: nearly the size that it had
   EXPECT_NEAR(session.go_to(0).course_strain, 0, 1e-9);
+}
+
+TEST(PullSession, ALoopFollowsTheForceAndComesBack) {
+  const ClothMoment cloth = moments_of(request_of("g\n")).back();
+  ASSERT_TRUE(cloth.relaxed);
+  const Fabric& rest = cloth.relaxed->fabric;
+  const LoopSpan& span = rest.loops.front();
+  const auto head = [&](const Fabric& fabric) {
+    return position(fabric, fabric.yarns[static_cast<std::size_t>(span.yarn)], span.apex);
+  };
+  PullSession session(*cloth.relaxed, *cloth.options, span.yarn, span.apex);
+  ASSERT_TRUE(session.pull({0, 0, 1}));
+  const RelaxResult& pulled = session.reached();
+  EXPECT_TRUE(pulled.converged) << pulled.message;
+  EXPECT_EQ(pulled.pass_throughs, 0);
+  const double once = (head(pulled.fabric) - head(rest)).z;
+  EXPECT_GT(once, 0.01);
+  ASSERT_TRUE(session.pull({0, 0, 2}));
+  EXPECT_GT((head(session.reached().fabric) - head(rest)).z, once) << "more force, more way";
+  EXPECT_EQ(check_interlacings(session.reached().fabric).intact, 1);
+  ASSERT_TRUE(session.pull({}));
+  EXPECT_LT(std::abs((head(session.reached().fabric) - head(rest)).z), once) << "friction keeps the rest";
 }
 
 TEST(Picking, FindsTheLoopUnderTheMouse) {

@@ -2,7 +2,6 @@
 // pictures. Needs a display (Xvfb will do).
 #pragma once
 #include <QApplication>
-#include <QCursor>
 #include <QDoubleSpinBox>
 #include <QElapsedTimer>
 #include <QFile>
@@ -261,15 +260,59 @@ class WindowTest : public QObject {
     QTRY_VERIFY_WITH_TIMEOUT(at_rest_now(), 60000);
   }
 
+  void a_pulled_yarn_moves_and_is_let_go() {
+    open_rib();
+    ClothView& cloth = window_->cloth();
+    const Fabric rest = *window_->session().fabric();
+    const LoopSpan& span = rest.loops.front();
+    const Vec3 head = position(rest, rest.yarns[static_cast<std::size_t>(span.yarn)], span.apex);
+    const QPoint at = cloth.on_screen(head + rest.lattice(1, 1)).toPoint();
+    QTest::mousePress(&cloth, Qt::LeftButton, Qt::ControlModifier, at);
+    QTest::mouseMove(&cloth, at + QPoint(0, -10));
+    QTest::mouseMove(&cloth, at + QPoint(0, -60));
+    QTRY_VERIFY_WITH_TIMEOUT(!window_->session().working(), 20000);
+    double farthest = 0;
+    const Fabric& pulled = *window_->session().fabric();
+    for (std::size_t y = 0; y < rest.yarns.size(); ++y)
+      for (std::size_t i = 0; i < rest.yarns[y].control_points.size(); ++i)
+        farthest =
+            std::max(farthest, distance(rest.yarns[y].control_points[i], pulled.yarns[y].control_points[i]));
+    QVERIFY2(farthest > 0.05, qPrintable(QString::number(farthest)));
+    QCOMPARE(window_->interlacings_text(), QStringLiteral("interlacings 4 of 4"));
+    QTest::mouseRelease(&cloth, Qt::LeftButton, Qt::ControlModifier, at + QPoint(0, -60));
+    QTRY_VERIFY_WITH_TIMEOUT(!window_->session().working(), 20000);
+    window_->session().forget_stretch();
+    QCOMPARE(window_->session().fabric()->yarns[0].control_points[0], rest.yarns[0].control_points[0]);
+  }
+
+  void another_editors_change_is_taken() {
+    open_rib();
+    QString changed = QString::fromUtf8(rib);
+    changed.replace(QStringLiteral("ge   ; second"), QStringLiteral("gg   ; second"));
+    file("rib.verm", qPrintable(changed));
+    QTRY_COMPARE_WITH_TIMEOUT(text(), changed, 5000);
+    QVERIFY(!window_->isWindowModified());
+    QTRY_VERIFY_WITH_TIMEOUT(at_rest(), 20000);
+    window_->session().undo();
+    QCOMPARE(text(), QString::fromUtf8(rib));
+  }
+
   void knitout_is_shown_and_not_edited() {
     QVERIFY(window_->open(QStringLiteral(LOOPWRIGHT_SOURCE_DIR "/examples/swatch.k")));
     QTRY_VERIFY_WITH_TIMEOUT(window_->session().fabric() != nullptr, 30000);
     QVERIFY(window_->editor().isReadOnly());
     QVERIFY(!window_->session().diagram().passes.empty());
-    auto* slider = window_->findChild<QSlider*>(QStringLiteral("passes"));
-    slider->setValue(2);
-    const SourceLocation at = window_->session().diagram().passes[1].at;
-    QCOMPARE(window_->editor().textCursor().blockNumber() + 1, at.line);
+    // the third needle of the second pass
+    auto* slider = window_->findChild<QSlider*>(QStringLiteral("acts"));
+    DiagramView& paper = window_->diagram();
+    QCOMPARE(slider->maximum(), paper.acts());
+    QVERIFY(paper.acts() > 20);
+    for (int k = 1; k <= 20; ++k) {
+      slider->setValue(k);
+      QCOMPARE(window_->editor().textCursor().blockNumber() + 1, paper.act_place(k - 1).line);
+      QVERIFY2(k == 1 || paper.act_place(k - 1).line > paper.act_place(k - 2).line,
+               "in the order of the file");
+    }
     const std::string before = window_->session().document().text();
     DiagramView& diagram = window_->diagram();
     diagram.set_tool(DiagramTool::tuck);
@@ -347,6 +390,9 @@ class WindowTest : public QObject {
     emit yarn->editingFinished();
     QVERIFY(
         text().contains(QStringLiteral(";;Yarn-A: wool 2/28 Nm colour=#b03020            ; the usual one")));
+    window_->findChild<QDoubleSpinBox*>(QStringLiteral("Friction A"))->setValue(0.4);
+    QVERIFY2(text().contains(QStringLiteral("friction=0.4")), qPrintable(text()));
+    QVERIFY(text().contains(QStringLiteral("colour=#b03020")));
     yarn->setText(QStringLiteral("wool 2/28 Nm diameter=-3mm"));
     const QString before = text();
     emit yarn->editingFinished();
@@ -387,8 +433,23 @@ class WindowTest : public QObject {
       if (action->text() == QStringLiteral("&Dark")) action->trigger();
   }
 
+  // Pictures of other files, to be looked at: LOOPWRIGHT_VIEW_FILES names them, parted by colons.
+  void pictures_of_files() {
+    const QStringList files =
+        qEnvironmentVariable("LOOPWRIGHT_VIEW_FILES").split(QLatin1Char(':'), Qt::SkipEmptyParts);
+    if (files.isEmpty()) QSKIP("set LOOPWRIGHT_VIEW_FILES to files to be looked at");
+    for (qsizetype i = 0; i < files.size(); ++i) {
+      QVERIFY(window_->open(files[i]));
+      QTRY_VERIFY_WITH_TIMEOUT(!window_->session().working() && window_->cloth().scene_is_current(), 60000);
+      QTest::qWait(1500);
+      keep_picture(qPrintable(QStringLiteral("file_%1.png").arg(i)));
+    }
+  }
+
   // Figures for docs/view.md; none is asked for, as they belong to the machine.
   void figures() {
+    if (!qEnvironmentVariableIsSet("LOOPWRIGHT_VIEW_FIGURES"))
+      QSKIP("set LOOPWRIGHT_VIEW_FIGURES to measure");
     const QString cell = QStringLiteral(
         ";!vermiculation-1\n;;Gauge: 12\n;;Bed-Gap: 2 mm\n;;Yarn-A: wool 2/28 Nm\n"
         ";;Loop-Length: 5.9 mm\n;;Size: 8 wales x 8 courses\n;;Edges: held\n"

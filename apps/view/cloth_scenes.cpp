@@ -1,0 +1,145 @@
+// What the cloth's picture is made of, built aside: yarn scenes and the loop model.
+#include <QMetaObject>
+#include <algorithm>
+#include <cmath>
+
+#include "cloth_view.hpp"
+
+namespace loopwright {
+namespace {
+
+// Whole repeats that make about the size that the file asks for, and no more than can be drawn quickly.
+std::array<int, 2> repeats_for(const Fabric& fabric, const Knitting* knitting) {
+  if (!fabric.periodic) return {1, 1};
+  const auto enough = [](int wanted, double per_cell) {
+    return std::clamp(static_cast<int>(std::lround(wanted / std::max(per_cell, 0.5))), 1, 24);
+  };
+  int wales = 8, courses = 8;
+  if (knitting) {
+    const FabricSettings& settings = knitting->program.settings;
+    if (settings.size_wales > 0) wales = std::min(settings.size_wales, 16);
+    if (settings.size_courses > 0) courses = std::min(settings.size_courses, 16);
+  }
+  return {enough(wales, fabric.wales), enough(courses, fabric.courses)};
+}
+
+}  // namespace
+
+void ClothView::take_fabric() {
+  if (!session_.fabric()) {
+    drawn_ = nullptr;
+    scene_ = moving_scene_ = nullptr;
+    motion_ = nullptr;
+    motion_of_ = nullptr;
+    follows_ = true;
+    redraw();
+    return;
+  }
+  ask_for_scene();
+}
+
+// Pixels of a yarn's diameter, in steps: finer meshes are made when the camera comes nearer.
+double ClothView::wanted_detail() const {
+  const double pixels = height() * devicePixelRatioF() / std::max(camera_.height, 1e-6);
+  return std::clamp(std::exp2(std::round(std::log2(std::max(pixels, 1.0)))), 4.0, 32.0);
+}
+
+void ClothView::ask_for_scene() {
+  const std::shared_ptr<const Fabric> fabric = session_.fabric();
+  if (!fabric || style_ != ClothStyle::yarn) {
+    redraw();
+    return;
+  }
+  const bool at_work = session_.working();
+  SceneOptions options;
+  const Knitting* knitting = session_.moment().knitting.get();
+  repeats_ = options.repeats = repeats_for(*fabric, knitting);
+  detail_ = wanted_detail();
+  options.pixels_per_diameter = at_work ? std::min(detail_, 8.0) : detail_;
+  options.look.occlusion = !at_work;
+  options.look.fuzz = 0;
+  const Selection& chosen = session_.selection();
+  const std::vector<int> kin = session_.spans_at(chosen.at);
+  const std::vector<int> spans = chosen.span >= 0 ? std::vector<int>{chosen.span} : std::vector<int>{};
+  const auto relax = session_.moment().options;
+  const ModelOptions model = relax ? relax->model : ModelOptions();
+  // forces have a meaning in cloth that the yarn model holds
+  const bool forces_known = relax != nullptr;
+  const ColourBy by = !forces_known && (colour_by_ == ColourBy::tension || colour_by_ == ColourBy::contact)
+                          ? ColourBy::yarn
+                          : colour_by_;
+  const int serial = ++scenes_asked_;
+  scene_builder_.start([this, serial, fabric, options, spans, kin, model, by, at_work,
+                        repeats = repeats_](const std::atomic<bool>& cancelled) mutable {
+    BuiltScene built;
+    built.repeats = repeats;
+    built.coarse = at_work;
+    try {
+      built.colours = cloth_colours(*fabric, model, by, spans, kin);
+      options.colours = built.colours.segments;
+      if (!cancelled) built.scene = std::make_shared<const YarnScene>(yarn_scene(*fabric, options));
+      options.pixels_per_diameter = std::min(options.pixels_per_diameter, 6.0);
+      if (!cancelled && !at_work)
+        built.moving = std::make_shared<const YarnScene>(yarn_scene(*fabric, options));
+    } catch (const std::exception&) {
+      built.scene = nullptr;  // the message of the moment says what is wrong with the fabric
+    }
+    QMetaObject::invokeMethod(
+        this,
+        [this, serial, fabric, built = std::move(built)]() mutable {
+          scenes_taken_ = serial;
+          drawn_ = fabric;
+          take_scene(std::move(built));
+        },
+        Qt::QueuedConnection);
+  });
+}
+
+void ClothView::take_scene(BuiltScene built) {
+  if (!built.scene) return;
+  scene_ = std::move(built.scene);
+  moving_scene_ = std::move(built.moving);
+  colours_ = std::move(built.colours);
+  repeats_ = built.repeats;
+  coarse_ = built.coarse;
+  uploaded_ = false;
+  follow();
+  // the work ended meanwhile, or the camera is nearer now
+  if ((coarse_ && !session_.working()) || (!coarse_ && wanted_detail() != detail_)) ask_for_scene();
+  redraw();
+}
+
+// The loop model of the knitting that is shown, built aside.
+void ClothView::ask_for_motion() {
+  if (!session_.working() && coarse_ && scene_ && style_ == ClothStyle::yarn) ask_for_scene();
+  const auto knitting = session_.moment().knitting;
+  if (style_ == ClothStyle::yarn || !knitting || knitting == motion_of_) return;
+  motion_of_ = knitting;
+  motion_builder_.start([this, knitting, text = session_.document().text(),
+                         suffix = session_.document().suffix()](const std::atomic<bool>&) {
+    std::shared_ptr<LoopMotion> motion;
+    QString problem;
+    try {
+      // the piece as the file says it, as `render --style structure` draws it
+      Diagnostics diagnostics;
+      ClothRequest request;
+      request.text = text, request.suffix = suffix;
+      motion = std::make_shared<LoopMotion>(knit_text(request, {}, diagnostics), std::vector<PiecePlace>{});
+    } catch (const std::exception& fault) {
+      problem = QString::fromUtf8(fault.what());
+    }
+    QMetaObject::invokeMethod(
+        this,
+        [this, motion, problem] {
+          if (!problem.isEmpty()) emit session_.refused(problem);
+          motion_ = motion;
+          if (motion_ && style_ != ClothStyle::yarn) fit();
+          if (playing_) frame_timer_.start();
+          emit motion_changed();
+          redraw();
+        },
+        Qt::QueuedConnection);
+  });
+}
+
+}  // namespace loopwright

@@ -54,6 +54,9 @@ void warn(const char* category, const std::string& text);
 // for threads that the thread which forked had before and which are no more: a thread of one's own has none
 // of them.
 bool is_forked();
+// To be called before a picture is drawn. Throws in a copy of a process that has drawn one: OpenGL drivers
+// hang there.
+void begin_drawing();
 // Keeps a signal that came while another thread works, for its Watch; and raises one that no Watch took.
 void note_signals();
 void raise_noted_signal();

@@ -127,6 +127,7 @@ Image picture(const Cloth& cloth, const RenderOptions& options, std::optional<do
     throw std::invalid_argument("pixels_per_mm must be a positive number");
   return without_gil([&] {
     const std::lock_guard lock(one_at_a_time());
+    begin_drawing();
     if (!pixels_per_mm) return render(fabric, options);
     const Bounds bounds = fabric_bounds(fabric, drawn_repeats(fabric, options.repeats));
     Camera camera = fitted_camera(options.view, bounds, static_cast<double>(options.width) / options.height);

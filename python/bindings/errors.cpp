@@ -85,6 +85,18 @@ void warn(const char* category, const std::string& said) {
   if (PyErr_WarnEx(type.ptr(), said.c_str(), 1) != 0) throw py::error_already_set();
 }
 
+namespace {
+std::atomic<bool> has_drawn{false}, cannot_draw{false};
+}
+
+void begin_drawing() {
+  if (cannot_draw)
+    throw std::runtime_error(
+        "no picture can be drawn: this process is a copy of one that has drawn, which OpenGL drivers do not "
+        "survive; start it with multiprocessing.get_context('spawn')");
+  has_drawn = true;
+}
+
 bool is_forked() {
   static std::atomic<bool> forked{false};
   // nobody is inside HDF5 or a driver while the process is copied
@@ -93,6 +105,7 @@ bool is_forked() {
                      [] {
                        one_at_a_time().unlock();
                        forked = true;
+                       cannot_draw = cannot_draw || has_drawn;
                      });
   static_cast<void>(registered);
   return forked;

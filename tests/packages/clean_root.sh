@@ -42,11 +42,12 @@ inside() {
     bash -euo pipefail -c "$2"
 }
 
-inside "installation of everything but headers" '
+# what apt takes from the packages that were made
+install='apt-get install -y --no-install-recommends'
+inside "the command alone" "
   apt-get update > /tmp/apt.log
-  ls /packages/*.deb | grep -v -- -dev_ | xargs apt-get install -y --no-install-recommends > /tmp/apt.log 2>&1 ||
-    { cat /tmp/apt.log; exit 1; }
-  dpkg -l | grep loopwright'
+  $install /packages/libloopwright[0-9]*.deb /packages/loopwright_*.deb > /tmp/apt.log 2>&1 || { cat /tmp/apt.log; exit 1; }
+  dpkg -l | grep loopwright"
 inside "a picture without the recommended packages: an error, not a crash" '
   cd /usr/share/doc/loopwright/examples
   status=0
@@ -58,6 +59,9 @@ inside "a picture without the recommended packages: an error, not a crash" '
 inside "the recommended packages" '
   recommended=$(dpkg-query -W -f="\${Recommends}" loopwright | tr -d ,)
   apt-get install -y --no-install-recommends $recommended > /tmp/apt.log 2>&1 || { cat /tmp/apt.log; exit 1; }'
+inside "everything but headers" "
+  ls /packages/*.deb | grep -v -- -dev_ | xargs $install > /tmp/apt.log 2>&1 || { cat /tmp/apt.log; exit 1; }
+  dpkg -l | grep loopwright"
 inside "the command" '
   loopwright --version
   cd /tmp && cp -r /usr/share/doc/loopwright/examples .

@@ -134,6 +134,22 @@ def test_a_sweep_in_processes_is_the_same_as_in_one(start):
         assert pool.map_async(width_of, lengths).get(timeout=60) == here
 
 
+def drawn_in(cloth):
+    try:
+        return cloth.render(size=(64, 64)).tobytes()
+    except loopwright.Error as fault:
+        return str(fault)
+
+
+@pytest.mark.parametrize("start", ["fork", "spawn"])
+def test_a_picture_in_another_process_is_drawn_or_refused(start, rib):
+    """A copy of a process that has drawn would hang in the driver."""
+    here = drawn_in(rib)
+    with multiprocessing.get_context(start).Pool(1) as pool:
+        there = pool.apply_async(drawn_in, (rib,)).get(timeout=60)
+    assert there == here if start == "spawn" else "get_context('spawn')" in there
+
+
 def test_threads_of_python_may_work_at_once(examples, tmp_path):
     names = ["rib", "garter", "moss", "plain"] * 2
     alone = {name: loopwright.relax(examples / f"structures/{name}.verm", periodic=True).measure() for name in names}

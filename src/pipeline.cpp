@@ -214,6 +214,7 @@ RelaxOptions relax_options(const State& state) {
   options.grow_in = number("radius") < 1;
   if (state.numbers.contains("framed") && number("framed") == 0) options.model.free = no_frame;
   if (state.numbers.contains("plate_room")) options.plate_room = number("plate_room");
+  options.history = state.history;
   return options;
 }
 
@@ -300,6 +301,7 @@ State saved_state(const RelaxResult& relaxed, const RelaxOptions& options, doubl
     state.numbers["plate_low"] = relaxed.plates.low;
     state.numbers["plate_high"] = relaxed.plates.high;
   }
+  state.history = relaxed.history;
   state.numbers["pass_throughs"] = relaxed.pass_throughs;
   state.numbers["converged"] = relaxed.converged ? 1 : 0;
   state.numbers["residual"] = relaxed.residual;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "mechanics/contact/segment_pairs.hpp"
+#include "mechanics/contact_history.hpp"
 #include "mechanics/energies/friction.hpp"
 #include "mechanics/linear/block_matrix.hpp"
 #include "mechanics/yarn_model.hpp"
@@ -21,14 +22,6 @@ struct EnergyParts {
   double stored() const { return stretch + bend + contact + plates; }
   double total() const { return stored() + friction + load; }
 };
-
-// The elastic slip of segment a against segment b at lattice image (m, n), in d.
-struct ContactSlip {
-  std::int32_t a = 0, b = 0;
-  std::int8_t m = 0, n = 0;
-  Vec3 slip;
-};
-using ContactHistory = std::vector<ContactSlip>;
 
 class Assembly {
  public:

@@ -152,6 +152,21 @@ void put_loops(hdf5::Writer& out, const Fabric& fabric) {
   out.column("interlacings/shift", shifts(pairs), 2);
 }
 
+// States without friction have no such group, as those from before it was kept.
+void put_history(hdf5::Writer& out, const ContactHistory& history) {
+  if (history.empty()) return;
+  std::vector<std::int32_t> segments, shift;
+  std::vector<double> slip;
+  for (const ContactSlip& contact : history) {
+    segments.insert(segments.end(), {contact.a, contact.b});
+    shift.insert(shift.end(), {contact.m, contact.n});
+    slip.insert(slip.end(), {contact.slip.x, contact.slip.y, contact.slip.z});
+  }
+  out.column("history/segments", segments, 2);
+  out.column("history/shift", shift, 2);
+  out.column("history/slip", slip, 3, "d");
+}
+
 template <class Map, class T>
 void put_map(const Map& map, std::vector<std::string>& names, std::vector<T>& values) {
   for (const auto& [name, value] : map) {
@@ -165,12 +180,15 @@ void put_map(const Map& map, std::vector<std::string>& names, std::vector<T>& va
 void write_state(const std::filesystem::path& path, const State& state) {
   if (const std::string fault = fabric_fault(state.fabric); !fault.empty())
     throw std::invalid_argument("this fabric cannot be saved: " + fault);
+  if (const std::string fault = history_fault(state.fabric, state.history); !fault.empty())
+    throw std::invalid_argument("this state cannot be saved: " + fault);
   std::vector<char> bytes;
   try {
     hdf5::Writer out;
     put_fabric(out, state.fabric);
     put_yarns(out, state.fabric.yarns);
     put_loops(out, state.fabric);
+    put_history(out, state.history);
     std::vector<std::string> names, text_names, texts;
     std::vector<double> numbers;
     put_map(state.numbers, names, numbers);
@@ -199,6 +217,8 @@ State read_state(const std::filesystem::path& path) {
     const hdf5::Reader in(std::span<char>(bytes).subspan(block_size));
     State state = state_from_columns(in);
     if (const std::string fault = fabric_fault(state.fabric); !fault.empty()) fail(path, fault);
+    if (const std::string fault = history_fault(state.fabric, state.history); !fault.empty())
+      fail(path, fault);
     return state;
   } catch (const hdf5::ContentError& error) {
     fail(path, error.what());

@@ -1,6 +1,7 @@
 // The reading side of the saved state: columns back into a fabric, and what makes a fabric unsound.
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "outputs/hdf5_columns.hpp"
 #include "outputs/state.hpp"
@@ -125,6 +126,26 @@ void read_loops(const Reader& in, Fabric& fabric) {
     fabric.interlacings.push_back({LoopId(parents[k]), LoopId(children[k]), signs[k], pair_at(shift, k)});
 }
 
+ContactHistory read_history(const Reader& in) {
+  ContactHistory history;
+  if (!in.has("history/segments")) return history;
+  const auto segments = in.integers("history/segments", 2), shift = in.integers("history/shift", 2);
+  const auto slip = in.doubles("history/slip", 3);
+  require_rows("history", segments.size(), shift);
+  require_rows("history", segments.size() / 2 * 3, slip);
+  const auto image = [&](std::size_t k) {
+    if (shift[k] < -128 || shift[k] > 127) throw ContentError("'history/shift' is out of range");
+    return static_cast<std::int8_t>(shift[k]);
+  };
+  for (std::size_t k = 0; 2 * k < segments.size(); ++k)
+    history.push_back({segments[2 * k],
+                       segments[2 * k + 1],
+                       image(2 * k),
+                       image(2 * k + 1),
+                       {slip[3 * k], slip[3 * k + 1], slip[3 * k + 2]}});
+  return history;
+}
+
 std::string yarn_fault(const FabricYarn& yarn, bool fabric_is_periodic) {
   if (!(yarn.diameter > 0) || !std::isfinite(yarn.diameter)) return "its diameter is not a positive number";
   if (!(yarn.segment_rest_length > 0) || !std::isfinite(yarn.segment_rest_length))
@@ -152,6 +173,7 @@ State state_from_columns(const Reader& in) {
   read_fabric(in, state.fabric);
   read_yarns(in, state.fabric.yarns);
   read_loops(in, state.fabric);
+  state.history = read_history(in);
   const auto number_names = in.texts("run/number_names"), text_names = in.texts("run/text_names");
   const auto numbers = in.doubles("run/numbers");
   const auto texts = in.texts("run/texts");
@@ -185,6 +207,22 @@ std::string fabric_fault(const Fabric& fabric) {
   for (const PlacedInterlacing& pair : fabric.interlacings)
     if (!pair.parent.valid() || !pair.child.valid() || (pair.sign != 1 && pair.sign != -1))
       return "an interlacing names no loop or has a sign other than +1 and -1";
+  return {};
+}
+
+std::string history_fault(const Fabric& fabric, const ContactHistory& history) {
+  int segments = 0;
+  for (const FabricYarn& yarn : fabric.yarns) segments += yarn.segments();
+  const auto is_one = [&](std::int32_t segment) { return segment >= 0 && segment < segments; };
+  for (std::size_t k = 0; k < history.size(); ++k) {
+    const ContactSlip& now = history[k];
+    if (!is_one(now.a) || !is_one(now.b)) return "friction's history names a segment that does not exist";
+    if (!is_finite(now.slip)) return "friction's history has a slip that is not a finite number";
+    if (k == 0) continue;
+    const ContactSlip& before = history[k - 1];
+    if (std::tie(before.a, before.b, before.m, before.n) >= std::tie(now.a, now.b, now.m, now.n))
+      return "friction's history is not in the order of its segments";
+  }
   return {};
 }
 

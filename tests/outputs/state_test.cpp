@@ -121,11 +121,12 @@ State rich_state() {
   state.numbers = {
       {"residual", 1.0 / 3}, {"unknown", std::numeric_limits<double>::quiet_NaN()}, {"a/b c", -0.0}};
   state.texts = {{"source", std::string(200000, 'x') + "\nge\n"}, {"empty", ""}, {"Größe", "žluť"}};
+  state.history = {{0, 3, 0, 0, {0.01, -0.0, 1e-300}}, {0, 3, 0, 1, {}}, {2, 1, -1, 1, {-0.02, 0, 0.5}}};
   return state;
 }
 
 TEST_F(StateTest, RoundTripIsExact) {
-  for (State state : {rich_state(), State{test::plain_cell(), {}, {}}, State{}}) {
+  for (State state : {rich_state(), State{test::plain_cell(), {}, {}, {}}, State{}}) {
     write_state(in_folder("a.h5"), state);
     const State back = read_state(in_folder("a.h5"));
     expect_equal(state.fabric, back.fabric);
@@ -133,11 +134,31 @@ TEST_F(StateTest, RoundTripIsExact) {
     for (const auto& [name, value] : state.numbers)
       EXPECT_EQ(bits(value), bits(back.numbers.at(name))) << name;
     EXPECT_EQ(state.texts, back.texts);
+    ASSERT_EQ(state.history.size(), back.history.size());
+    for (std::size_t k = 0; k < state.history.size(); ++k) {
+      const auto& [a, b, m, n, slip] = state.history[k];
+      const ContactSlip& other = back.history[k];
+      EXPECT_EQ(std::tie(a, b, m, n), std::tie(other.a, other.b, other.m, other.n));
+      EXPECT_EQ(bits(slip), bits(other.slip));
+    }
   }
 }
 
+TEST_F(StateTest, HistoryOfOtherContactsIsRefused) {
+  const Fabric fabric = test::plain_piece(2, 2);
+  const auto fault = [&](const ContactHistory& history) { return history_fault(fabric, history); };
+  EXPECT_EQ(fault({{0, 1, 0, 0, {}}, {0, 2, 0, 0, {}}}), "");
+  EXPECT_THAT(fault({{0, 100000, 0, 0, {}}}), HasSubstr("does not exist"));
+  EXPECT_THAT(fault({{-1, 0, 0, 0, {}}}), HasSubstr("does not exist"));
+  EXPECT_THAT(fault({{0, 2, 0, 0, {}}, {0, 1, 0, 0, {}}}), HasSubstr("order"));
+  EXPECT_THAT(fault({{0, 1, 0, 0, {0, std::numeric_limits<double>::infinity(), 0}}}), HasSubstr("finite"));
+  State state{fabric, {}, {}, {{0, 100000, 0, 0, {}}}};
+  EXPECT_THROW(write_state(in_folder("a.h5"), state), std::invalid_argument);
+  EXPECT_FALSE(std::filesystem::exists(in_folder("a.h5")));
+}
+
 TEST_F(StateTest, EqualStatesAreEqualFilesAndSmall) {
-  const State state{test::plain_piece(30, 30), {}, {}};
+  const State state{test::plain_piece(30, 30), {}, {}, {}};
   write_state(in_folder("a.h5"), state);
   write_state(in_folder("b.h5"), state);
   const std::string a = content(in_folder("a.h5"));
@@ -198,7 +219,7 @@ class ForgedState : public StateTest {
   // The HDF5 part is changed through HDF5 itself and the user block made anew as the format says.
   template <class Change>
   std::string forged(Change change) const {
-    write_state(in_folder("a.h5"), {test::plain_piece(2, 2, 8), {}, {}});
+    write_state(in_folder("a.h5"), {test::plain_piece(2, 2, 8), {}, {}, {{0, 5, 0, 0, {0.01, 0, 0}}}});
     const std::string part = content(in_folder("a.h5")).substr(512);
     std::ofstream(in_folder("part.h5"), std::ios::binary) << part;
     const hid_t file = H5Fopen(in_folder("part.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
@@ -253,6 +274,12 @@ TEST_F(ForgedState, WrongContentIsSaid) {
               HasSubstr("loops/side"));
   EXPECT_THAT(forged([](hid_t f) { overwrite_first(f, "fabric/periodic", H5T_NATIVE_INT, 2); }),
               HasSubstr("fabric/periodic"));
+  EXPECT_THAT(forged([](hid_t f) { overwrite_first(f, "history/segments", H5T_NATIVE_INT, 9999); }),
+              HasSubstr("segment that does not exist"));
+  EXPECT_THAT(forged([](hid_t f) { overwrite_first(f, "history/shift", H5T_NATIVE_INT, 300); }),
+              HasSubstr("history/shift"));
+  EXPECT_THAT(forged([](hid_t f) { H5Ldelete(f, "history/slip", H5P_DEFAULT); }),
+              HasSubstr("'history/slip' is missing"));
   EXPECT_THAT(forged([](hid_t f) { H5Ldelete(f, "loops/apex", H5P_DEFAULT); }),
               HasSubstr("'loops/apex' is missing"));
   EXPECT_THAT(forged([](hid_t f) {

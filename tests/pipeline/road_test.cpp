@@ -190,6 +190,26 @@ TEST(Road, SavedStateIsGoneOnWith) {
   }
 }
 
+// What friction holds, it holds in the saved state as well: at rest before the first step. Without its
+// history the same cloth moves.
+TEST(Road, RestHeldByFrictionIsRestWhenGoneOnWith) {
+  const TemporaryFolder folder;
+  folder.write("moss.verm", moss);
+  ASSERT_EQ(
+      run_command({"relax", "moss.verm", "--periodic", "--friction", "0.3", "-o", "a.h5"}, folder).status, 0);
+  ASSERT_EQ(run_command({"relax", "a.h5", "-o", "b.h5"}, folder).status, 0);
+  State first = read_state(folder.file("a.h5"));
+  ASSERT_FALSE(first.history.empty());
+  const State second = read_state(folder.file("b.h5"));
+  EXPECT_EQ(second.numbers.at("newton_iterations"), first.numbers.at("newton_iterations"));
+  EXPECT_NEAR(second.fabric.height, first.fabric.height, 1e-9 * first.fabric.height);
+  first.history.clear();
+  write_state(folder.file("forgot.h5"), first);
+  ASSERT_EQ(run_command({"relax", "forgot.h5", "-o", "c.h5"}, folder).status, 0);
+  EXPECT_GT(read_state(folder.file("c.h5")).numbers.at("newton_iterations"),
+            first.numbers.at("newton_iterations"));
+}
+
 // A finite piece that is gone on with lies between the plates of its first run, not between new ones round
 // what the first run left.
 TEST(Road, APieceThatIsGoneOnWithKeepsItsPlates) {

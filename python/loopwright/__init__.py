@@ -258,7 +258,7 @@ def _cloth_of_bytes(data: bytes) -> Cloth:
 
 
 def _pickled(cloth: Cloth) -> tuple[Callable[[bytes], Cloth], tuple[bytes]]:
-    """As a saved state: what a state holds is kept, to the bit; the history of friction is not."""
+    """As a saved state: what a state holds, the history of friction included, is kept to the bit."""
     with _tempfile.TemporaryDirectory() as folder:
         file = _Path(folder) / "cloth.h5"
         cloth.save(file)

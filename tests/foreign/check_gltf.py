@@ -2,7 +2,8 @@
 """Exported glTF files against the rules of the format's specification (Khronos, glTF 2.0, version 2.0.1), written here from
 its text alone, and read by Assimp where it is installed.
 
-Usage: check_gltf.py COMMAND   Needs nothing but Python; Assimp's part is left out without the Debian package assimp-utils.
+Usage: check_gltf.py COMMAND   Needs nothing but Python; Assimp's part is left out without the Debian package assimp-utils,
+that of Khronos' own validator without npm's gltf-validator.
 """
 import base64
 import json
@@ -178,6 +179,34 @@ def faults_of(path):
     return faults, vertices, triangles
 
 
+VALIDATE = """
+const validator = require('gltf-validator'), fs = require('fs'), path = require('path');
+const file = process.argv[1], folder = path.dirname(file);
+validator.validateBytes(new Uint8Array(fs.readFileSync(file)), {
+  uri: path.basename(file),
+  externalResourceFunction: (uri) => Promise.resolve(new Uint8Array(fs.readFileSync(path.join(folder, uri)))),
+}).then((report) => console.log(JSON.stringify(report.issues)), (error) => { console.error(error); process.exit(1); });
+"""
+
+
+def has_khronos_validator():
+    """npm's gltf-validator, where node finds it (npm install -g gltf-validator; NODE_PATH names other folders)."""
+    if not shutil.which("node"):
+        return False
+    return subprocess.run(["node", "-e", "require('gltf-validator')"], capture_output=True).returncode == 0
+
+
+def check_with_khronos(path, check):
+    done = subprocess.run(["node", "-e", VALIDATE, path], text=True, capture_output=True)
+    if done.returncode != 0:
+        check.holds(False, f"{path.name}: the Khronos validator says {done.stderr.strip()}")
+        return
+    issues = json.loads(done.stdout)
+    bad = [m for m in issues["messages"] if m["severity"] < 2]  # errors and warnings
+    check.holds(not bad, f"{path.name}: the Khronos validator finds {issues['numErrors']} errors, "
+                         f"{issues['numWarnings']} warnings {bad[:3]}")
+
+
 def check_checker(folder, check):
     """The rules find what is wrong: files that were good and are spoiled."""
     good = (folder / "rib.glb").read_bytes()
@@ -213,7 +242,7 @@ def check_checker(folder, check):
 
 def main():
     command, check = Path(sys.argv[1]).resolve(), e.Checks()
-    assimp = shutil.which("assimp")
+    assimp, khronos = shutil.which("assimp"), has_khronos_validator()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         e.write_helix(folder / "helix.obj")
@@ -226,6 +255,8 @@ def main():
         for file in ("helix.glb", "rib.glb", "six.gltf", "piece.glb"):
             faults, vertices, triangles = faults_of(folder / file)
             check.holds(not faults, f"{file}: {vertices} vertices, {triangles} triangles keep the rules {faults}")
+            if khronos:
+                check_with_khronos(folder / file, check)
             if not assimp:
                 continue
             said = subprocess.run([assimp, "info", folder / file], text=True, capture_output=True).stdout
@@ -233,6 +264,8 @@ def main():
             once = triangles // 6 if file == "six.gltf" else triangles  # a mesh counts once, however many nodes show it
             check.holds(faces == once, f"{file}: Assimp reads {faces} triangles")
         check_checker(folder, check)
+    if not khronos:
+        print("npm's gltf-validator is not installed: its reading is left out")
     if not assimp:
         print("Assimp (Debian package assimp-utils) is not installed: its reading is left out")
     check.exit()

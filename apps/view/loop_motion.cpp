@@ -12,6 +12,8 @@ namespace {
 LoopModelOptions model_options(const std::vector<PiecePlace>& held) {
   LoopModelOptions options;
   options.fold = 0.25;  // keeps the fold of rib and purl, as the command's loop model does
+  // without these courses slide along each other where a hand pulls, and crease
+  options.shear = options.bend = 0.1;
   // a rib comes from twice its width: faster, it overshoots, and its courses come to rest in zigzag
   options.damping = 5;
   options.clamps = held;

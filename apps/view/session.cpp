@@ -98,15 +98,20 @@ void Session::start_cloth(std::size_t most_loops) {
           this, [this, serial, moment = std::move(moment)] { take_moment(serial, moment); },
           Qt::QueuedConnection);
     });
-    QMetaObject::invokeMethod(
-        this,
-        [this, serial] {
-          if (serial != serial_) return;
-          working_ = false;
-          emit moment_changed();
-        },
-        Qt::QueuedConnection);
+    end_work(serial);
   });
+}
+
+// From the worker's thread.
+void Session::end_work(int serial) {
+  QMetaObject::invokeMethod(
+      this,
+      [this, serial] {
+        if (serial != serial_) return;
+        working_ = false;
+        emit moment_changed();
+      },
+      Qt::QueuedConnection);
 }
 
 void Session::take_moment(int serial, ClothMoment moment) {
@@ -253,14 +258,7 @@ void Session::work_by_hand(const std::function<void(int serial, const std::atomi
       QMetaObject::invokeMethod(
           this, [this, why] { emit refused(why); }, Qt::QueuedConnection);
     }
-    QMetaObject::invokeMethod(
-        this,
-        [this, serial] {
-          if (serial != serial_) return;
-          working_ = false;
-          emit moment_changed();
-        },
-        Qt::QueuedConnection);
+    end_work(serial);
   });
 }
 

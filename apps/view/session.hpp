@@ -84,6 +84,7 @@ class Session : public QObject {
  private:
   void read_text();
   void start_cloth(std::size_t most_loops);
+  void end_work(int serial);
   void take_moment(int serial, ClothMoment moment);
   // Runs a hand's work in the worker; it answers the cloth that it came to.
   void work_by_hand(const std::function<void(int serial, const std::atomic<bool>& cancelled)>& work);

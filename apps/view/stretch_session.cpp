@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "experiments/deformed.hpp"
-#include "geometry/interlacing.hpp"
 
 namespace loopwright {
 namespace {
@@ -42,12 +41,7 @@ StretchPoint StretchSession::point() const {
   p.course_force = at_.measure_forces[0] * force_unit / height;
   p.wale_force = at_.measure_forces[1] * force_unit / width;
   p.energy = (at_.energy.stored() - energy_at_rest_) * bend / d / (width * height);
-  p.residual = at_.residual;
-  p.newton_iterations = at_.newton_iterations;
-  p.pass_throughs = at_.pass_throughs;
-  p.converged = at_.converged;
-  const InterlacingCheck check = check_interlacings(at_.fabric);
-  p.interlacings = check.expected, p.interlacings_intact = check.intact;
+  set_run(p, at_);
   return p;
 }
 

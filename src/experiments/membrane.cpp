@@ -7,7 +7,6 @@
 
 #include "experiments/deformed.hpp"
 #include "experiments/rest_hessian.hpp"
-#include "geometry/interlacing.hpp"
 
 namespace loopwright {
 namespace {
@@ -88,12 +87,7 @@ class StrainedCell {
     p.course_strain = at_.strain[0], p.wale_strain = at_.strain[1], p.shear = at_.strain[2];
     p.course_force = force(0), p.wale_force = force(1), p.shear_force = force(2);
     p.energy = (r.energy.stored() - stored_at_rest_) * bend / (d * d * d) / area;
-    p.residual = r.residual;
-    p.newton_iterations = r.newton_iterations;
-    p.pass_throughs = r.pass_throughs;
-    p.converged = r.converged;
-    const InterlacingCheck check = check_interlacings(r.fabric);
-    p.interlacings = check.expected, p.interlacings_intact = check.intact;
+    set_run(p, r);
     p.min_clearance = min_clearance(r.fabric).distance;
     return p;
   }

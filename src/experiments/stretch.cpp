@@ -83,6 +83,15 @@ double usual_load_step(std::span<const double> loads) {
   return largest > 0 ? largest / 20 : 1;
 }
 
+void set_run(StretchPoint& point, const RelaxResult& run) {
+  point.residual = run.residual;
+  point.newton_iterations = run.newton_iterations;
+  point.pass_throughs = run.pass_throughs;
+  point.converged = run.converged;
+  const InterlacingCheck check = check_interlacings(run.fabric);
+  point.interlacings = check.expected, point.interlacings_intact = check.intact;
+}
+
 StretchResult stretch(const RelaxResult& relaxed, const RelaxOptions& options, const StretchTest& test,
                       const std::function<bool(const StretchPoint&)>& on_point) {
   const Fabric& start = relaxed.fabric;
@@ -115,12 +124,7 @@ StretchResult stretch(const RelaxResult& relaxed, const RelaxOptions& options, c
     point.wale_force = at.measure_forces[1] * force_unit / width;
     point.shear_force = at.measure_forces[2] * force_unit / width;
     point.energy = (stored(at) - energy_at_rest) * bend_stiffness / d / (width * height);
-    point.residual = at.residual;
-    point.newton_iterations = at.newton_iterations;
-    point.pass_throughs = at.pass_throughs;
-    point.converged = at.converged;
-    const InterlacingCheck check = check_interlacings(at.fabric);
-    point.interlacings = check.expected, point.interlacings_intact = check.intact;
+    set_run(point, at);
     point.min_clearance = min_clearance(at.fabric).distance;
     result.points.push_back(point);
     return !on_point || on_point(point);

@@ -40,6 +40,9 @@ struct StretchPoint {
   bool converged = false;
 };
 
+// What the run to a point came to: its residual, counts and interlacings.
+void set_run(StretchPoint& point, const RelaxResult& run);
+
 struct StretchResult {
   std::vector<StretchPoint> points;  // the first: the cloth at rest before the test
   Fabric fabric;                     // as it is at the last point

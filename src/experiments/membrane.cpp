@@ -7,6 +7,7 @@
 
 #include "experiments/deformed.hpp"
 #include "experiments/rest_hessian.hpp"
+#include "geometry/interlacing.hpp"
 
 namespace loopwright {
 namespace {

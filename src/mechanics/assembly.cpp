@@ -174,13 +174,19 @@ void Assembly::build_pattern(BlockMatrix& matrix) const {
     columns[static_cast<std::size_t>(fill[static_cast<std::size_t>(i)]++)] = j;
   });
   matrix.row_start.assign(nodes + 1, 0);
-  matrix.column.clear();
+  std::size_t kept = 0;
   for (std::size_t i = 0; i < nodes; ++i) {
     const auto begin = columns.begin() + start[i], end = columns.begin() + start[i + 1];
     std::sort(begin, end);
-    matrix.column.insert(matrix.column.end(), begin, std::unique(begin, end));
-    matrix.row_start[i + 1] = static_cast<std::int32_t>(matrix.column.size());
+    const auto last = std::unique(begin, end);
+    // Behind the rows before it: they have left room.
+    const auto to = columns.begin() + static_cast<std::ptrdiff_t>(kept);
+    if (to != begin) std::copy(begin, last, to);
+    kept += static_cast<std::size_t>(last - begin);
+    matrix.row_start[i + 1] = static_cast<std::int32_t>(kept);
   }
+  matrix.column.assign(columns.begin(), columns.begin() + static_cast<std::ptrdiff_t>(kept));
+  std::vector<std::int32_t>().swap(columns);
   matrix.block.assign(matrix.column.size(), Block{});
   matrix.border.assign(nodes, Block{});
   matrix.corner = {};

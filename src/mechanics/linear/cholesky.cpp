@@ -60,7 +60,8 @@ void lower_values(const BlockMatrix& m, double shift, LowerColumns& out) {
       }
 }
 
-// Solves the 3 x 3 symmetric positive definite system; false if it is not positive definite.
+}  // namespace
+
 bool invert3(const Block& s, Block& inverse) {
   Block l{};
   for (std::size_t i = 0; i < 3; ++i)
@@ -89,8 +90,6 @@ bool invert3(const Block& s, Block& inverse) {
   }
   return true;
 }
-
-}  // namespace
 
 struct Cholesky::Factor {
   std::vector<std::int32_t> row_start, column;  // pattern of the analysed matrix

@@ -95,19 +95,17 @@ TEST(CoarseSpaces, ProjectionIsTheMatrixSeenThroughTheMap) {
     BlockMatrix coarse;
     space.project(problem.hessian, shift, coarse);
     ASSERT_EQ(coarse.rows(), space.points);
-    const Unknowns c = wave(static_cast<std::size_t>(space.points), 0.2);
+    Unknowns c = wave(static_cast<std::size_t>(space.points), 0.2);
+    c.g = {};  // coarse matrices leave the measures out
     Unknowns direct;
     multiply(coarse, c, direct);
     Unknowns fine, product, seen;
     fine.u.assign(problem.state.nodes.size(), Vec3{});
     space.add_prolonged(c.u, fine.u);
-    fine.g = c.g;
     multiply(problem.hessian, shift, fine, product);
     space.restricted(product.u, seen.u);
-    seen.g = product.g;
     for (std::size_t i = 0; i < seen.u.size(); ++i)
       EXPECT_LT(norm(seen.u[i] - direct.u[i]), 1e-9 * (1 + norm(seen.u[i])));
-    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(seen.g[k], direct.g[k], 1e-8 * (1 + std::abs(seen.g[k])));
   }
 }
 

@@ -22,6 +22,8 @@ extern "C" void omp_set_num_threads(int) __attribute__((weak));
 namespace loopwright {
 namespace {
 
+constexpr int small_order = 3000;  // unknowns
+
 // Lower triangle in compressed columns = upper triangle by rows of the symmetric matrix.
 struct LowerColumns {
   std::vector<int> start, row;
@@ -180,6 +182,8 @@ struct Cholesky::Factor {
     cholmod_free_work(&common);
     lower = {};
     row_start = column = {};
+    // Found again sooner than kept, for the many small factors of a large piece.
+    if (unknowns < small_order) std::vector<int>().swap(order);
   }
   void analyse(const BlockMatrix& m) {
     for (int attempt = 0; attempt < 2; ++attempt) {

@@ -159,28 +159,28 @@ bool Schwarz::factor(const BlockMatrix& matrix, double shift) {
 bool Schwarz::answer_measures(const BlockMatrix& matrix, double shift) {
   const bool known = !answers_.empty();
   answers_.resize(3);
-  std::array<Unknowns, 3> product;
+  Unknowns product;
   for (std::size_t k = 0; k < 3; ++k) {
     Unknowns& answer = answers_[k];
     if (!known) answer.u.assign(control_points_, Vec3{});
     answer.g = {};
     answer.g[k] = 1;
-    Unknowns force, change;
-    multiply(matrix, shift, answer, force);  // what is not yet at rest when the measure changes by one
-    force.g = {};
-    if (dot(force, force) > 0) {
-      const ConjugateGradientResult solved = conjugate_gradient(
-          matrix, shift, [this](const Unknowns& r, Unknowns& z) { solve_points(r, z); }, force, 1e-3,
-          known ? known_iterations : fresh_iterations, change);
-      iterations += solved.iterations;
-      if (solved.indefinite) return false;
-      for (std::size_t i = 0; i < control_points_; ++i) answer.u[i] -= change.u[i];
-    }
-    multiply(matrix, shift, answer, product[k]);
+    multiply(matrix, shift, answer, product);  // what is not yet at rest when the measure changes by one
+    product.g = {};
+    if (!(dot(product, product) > 0)) continue;
+    Unknowns change;
+    const ConjugateGradientResult solved = conjugate_gradient(
+        matrix, shift, [this](const Unknowns& r, Unknowns& z) { solve_points(r, z); }, product, 1e-3,
+        known ? known_iterations : fresh_iterations, change);
+    iterations += solved.iterations;
+    if (solved.indefinite) return false;
+    for (std::size_t i = 0; i < control_points_; ++i) answer.u[i] -= change.u[i];
   }
   Block seen;
-  for (std::size_t k = 0; k < 3; ++k)
-    for (std::size_t l = 0; l < 3; ++l) seen[3 * k + l] = dot(answers_[k], product[l]);
+  for (std::size_t l = 0; l < 3; ++l) {
+    multiply(matrix, shift, answers_[l], product);
+    for (std::size_t k = 0; k < 3; ++k) seen[3 * k + l] = dot(answers_[k], product);
+  }
   return invert3(seen, measures_inverse_);
 }
 

@@ -18,6 +18,18 @@ struct Stretch {
   double stiffness = 1;    // EA
   double rest_length = 1;  // h
 
+  double energy(const SegmentDofs& x) const {
+    double arc = 0;
+    for (std::size_t g = 0; g < 4; ++g) {
+      std::array<double, 3> a{};
+      for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t c = 0; c < 3; ++c) a[c] += gauss_spline[g].slope[i] * x[3 * i + c];
+      arc += gauss_weight[g] * std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+    }
+    const double strain = arc / rest_length - 1;
+    return 0.5 * (stiffness * strain) * strain * rest_length;
+  }
+
   LocalTerm<12> evaluate(const SegmentDofs& x) const {
     LocalTerm<12> term;
     double arc = 0;

@@ -10,7 +10,8 @@
 namespace loopwright {
 namespace {
 
-// Two sticks of 0.18 d on yarn bent to a radius of 0.5 d stray by 2 x 0.18^2 / (8 x 0.5) d from it.
+// Two sticks of 0.18 d on yarn bent to a radius of 0.5 d stray by 2 x 0.18^2 / (8 x 0.5) d from it; sticks
+// are 0.12 d long by default.
 constexpr double bent_away = 0.016;
 constexpr double smallest_ratio = 0.05;  // of motion to distance: less than this never cuts a step
 
@@ -81,19 +82,14 @@ struct Stick {
   Vec3 half, turn;
 };
 
-// Half-vectors of all samples' sticks: to the middle between neighbouring samples of a segment, so that
-// sticks tile the yarn as it lies, however stretched it is.
-std::vector<Stick> sticks(const SamplePlaces& from, const SamplePlaces& to, int samples) {
-  const auto n = static_cast<std::size_t>(samples);
-  const auto place = [](const SamplePlaces& p, std::size_t k) { return Vec3{p.x[k], p.y[k], p.z[k]}; };
-  std::vector<Stick> all(from.x.size());
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    const std::size_t i = k % n, before = i > 0 ? k - 1 : k, after = i + 1 < n ? k + 1 : k;
-    const double share = 0.5 / static_cast<double>(after - before);
-    all[k].half = share * (place(from, after) - place(from, before));
-    all[k].turn = share * (place(to, after) - place(to, before)) - all[k].half;
-  }
-  return all;
+// The stick of sample k: to the middle between its neighbours in the segment, so that sticks tile the yarn as
+// it lies, however stretched it is. n: samples per segment.
+Stick stick_of(const SamplePlaces& from, const SamplePlaces& to, std::size_t k, std::size_t n) {
+  const auto place = [](const SamplePlaces& p, std::size_t at) { return Vec3{p.x[at], p.y[at], p.z[at]}; };
+  const std::size_t i = k % n, before = i > 0 ? k - 1 : k, after = i + 1 < n ? k + 1 : k;
+  const double share = 0.5 / static_cast<double>(after - before);
+  const Vec3 half = share * (place(from, after) - place(from, before));
+  return {half, share * (place(to, after) - place(to, before)) - half};
 }
 
 // What bounds the motion of a segment's samples: all move by `mean` and at most `spread` more.
@@ -102,8 +98,7 @@ struct SegmentMotion {
   double spread = 0, half = 0, turn = 0;  // half, turn: the largest of its sticks
 };
 
-std::vector<SegmentMotion> segment_motions(const SamplePlaces& from, const SamplePlaces& to,
-                                           const std::vector<Stick>& stick, int samples) {
+std::vector<SegmentMotion> segment_motions(const SamplePlaces& from, const SamplePlaces& to, int samples) {
   const auto n = static_cast<std::size_t>(samples);
   std::vector<SegmentMotion> all(from.boxes.size());
   for (std::size_t e = 0; e < all.size(); ++e) {
@@ -113,9 +108,12 @@ std::vector<SegmentMotion> segment_motions(const SamplePlaces& from, const Sampl
     };
     for (std::size_t k = e * n; k < (e + 1) * n; ++k) {
       m.mean += motion(k) / static_cast<double>(n);
-      m.half = std::max(m.half, norm(stick[k].half));
-      m.turn = std::max(m.turn, norm(stick[k].turn));
+      const Stick stick = stick_of(from, to, k, n);
+      m.half = std::max(m.half, squared_norm(stick.half));
+      m.turn = std::max(m.turn, squared_norm(stick.turn));
     }
+    m.half = std::sqrt(m.half);
+    m.turn = std::sqrt(m.turn);
     for (std::size_t k = e * n; k < (e + 1) * n; ++k) m.spread = std::max(m.spread, norm(motion(k) - m.mean));
   }
   return all;
@@ -156,8 +154,7 @@ SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnS
   expand(model, target, extended);
   place_samples(model, extended, to);
 
-  const std::vector<Stick> stick = sticks(from, to, model.samples);
-  const std::vector<SegmentMotion> motions = segment_motions(from, to, stick, model.samples);
+  const std::vector<SegmentMotion> motions = segment_motions(from, to, model.samples);
 
   const auto& pairs = assembly.pairs();
   constexpr int pairs_per_chunk = 4096;
@@ -210,7 +207,7 @@ SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnS
                        rz = sz - (to.z[j0 + j] - from.z[j0 + j]);
           const double r2 = rx * rx + ry * ry + rz * rz;
           if (harmless(d2, r2)) continue;
-          const Stick &one = stick[i0 + i], &other = stick[j0 + j];
+          const Stick one = stick_of(from, to, i0 + i, count), other = stick_of(from, to, j0 + j, count);
           const double motion = std::sqrt(r2) + norm(one.turn) + norm(other.turn);
           const double gap2 = stick_distance2({dx, dy, dz}, one.half, other.half);
           w.gap2 = std::min(w.gap2, gap2);

@@ -18,7 +18,7 @@
 
 namespace loopwright {
 
-inline constexpr int most_contact_samples = 24;  // per segment
+inline constexpr int most_contact_samples = 36;  // per segment
 
 // A symmetric 3 x 3 matrix: xx, xy, xz, yy, yz, zz.
 using Symmetric3 = std::array<double, 6>;

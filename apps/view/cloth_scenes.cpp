@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cloth_view.hpp"
+#include "knitted_so_far.hpp"
 
 namespace loopwright {
 namespace {
@@ -89,10 +90,18 @@ void ClothView::ask_for_scene() {
         [this, serial, fabric, built = std::move(built)]() mutable {
           scenes_taken_ = serial;
           drawn_ = fabric;
+          show_knitted();
           take_scene(std::move(built));
         },
         Qt::QueuedConnection);
   });
+}
+
+void ClothView::show_knitted() {
+  const int until = session_.knitted_until();
+  const bool all = until < 0 || !drawn_ || !session_.moment().knitting;
+  fed_ = all ? std::vector<double>() : fed_until(*drawn_, session_.moment().knitting->graph, until);
+  redraw();
 }
 
 void ClothView::take_scene(BuiltScene built) {

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "knitted_so_far.hpp"
 #include "picking.hpp"
 
 namespace loopwright {
@@ -27,6 +28,7 @@ ClothView::ClothView(Session& session, QWidget* parent) : QOpenGLWidget(parent),
   connect(&session_, &Session::moment_changed, this, qOverload<>(&QWidget::update));
   connect(&session_, &Session::moment_changed, this, &ClothView::ask_for_motion);
   connect(&session_, &Session::selection_changed, this, &ClothView::ask_for_scene);
+  connect(&session_, &Session::knitted_changed, this, &ClothView::show_knitted);
   // after the last movement the picture gets its shadows back
   still_timer_.setSingleShot(true);
   still_timer_.setInterval(180);
@@ -202,6 +204,10 @@ void ClothView::draw_scene(int width, int height, double line_pixels) {
       yarns_->upload(*scene_);
       if (moving_scene_) moving_yarns_->upload(*moving_scene_);
       uploaded_ = true;
+    }
+    if (scene_ && drawn_) {
+      yarns_->show_only(runs_until(*scene_, *drawn_, fed_));
+      if (moving_scene_) moving_yarns_->show_only(runs_until(*moving_scene_, *drawn_, fed_));
     }
     DrawStyle style;
     style.background = background();

@@ -71,7 +71,8 @@ class ClothView : public QOpenGLWidget {
     QPointF start, last;
     bool moved = false, pulls = false, pulls_edge = false, pulls_yarn = false;
     StretchDirection edge = StretchDirection::course;
-    double edge_side = 1;  // +1: right or top edge
+    double edge_side = 1;      // +1: right or top edge
+    bool edge_chosen = false;  // whether its first way said what it is
     Vec3 held;             // place that is pulled
   };
   void follow();
@@ -87,10 +88,13 @@ class ClothView : public QOpenGLWidget {
   void take_scene(BuiltScene built);
   void ask_for_motion();
   void tick();
+  // Knitting needle by needle: how far each yarn has been fed, in its parameter; empty: all of it.
+  void show_knitted();
   void draw_scene(int width, int height, double line_pixels);
   void draw_into_buffer(QSize pixels);
   void redraw();  // the picture is out of date, not only what is written over it
   void paint_notes(QPainter& painter, QSize size);
+  QString broken_text() const;
   void paint_legend(QPainter& painter, QSize size);
   void choose_at(const QPointF& at);
   void begin_pull(const QPointF& at, bool at_yarn);
@@ -123,6 +127,7 @@ class ClothView : public QOpenGLWidget {
   std::shared_ptr<const YarnScene> scene_,
       moving_scene_;  // of a coarser mesh, for while it moves; may be none
   bool uploaded_ = false, coarse_ = false;
+  std::vector<double> fed_;
   int scenes_asked_ = 0, scenes_taken_ = 0;
   ClothColours colours_;
   std::array<int, 2> repeats_{1, 1};

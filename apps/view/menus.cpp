@@ -61,8 +61,22 @@ void MainWindow::build_file_menu() {
   connect(add(menu, tr("&Open \u2026"), QKeySequence::Open), &QAction::triggered, this, [this] {
     if (!may_leave()) return;
     const QString path = QFileDialog::getOpenFileName(this, tr("Open"), QString(),
-                                                      tr("Notations (*.verm *.k *.knitout);;All files (*)"));
+                                                      tr("Notations and cloth (*.verm *.k *.knitout *.h5 *.bcc *.yarns *.obj);;"
+                                                         "Notations (*.verm *.k *.knitout);;Saved states (*.h5);;"
+                                                         "Curves (*.bcc *.yarns *.obj);;All files (*)"));
     if (!path.isEmpty()) open(path);
+  });
+  QAction* from_state = add(menu, tr("New from this &notation"), {},
+                            tr("The notation of a saved state as a fabric file of its own"));
+  from_state->setObjectName(QStringLiteral("new from state"));
+  from_state->setEnabled(false);
+  connect(&session_, &Session::text_changed, from_state, [this, from_state] {
+    const Document& document = session_.document();
+    from_state->setEnabled(document.kind() == DocumentKind::cloth && document.has_fabric_text());
+  });
+  connect(from_state, &QAction::triggered, this, [this] {
+    session_.document().open_text(session_.document().text(), ".verm");
+    show_title();
   });
   QMenu* recent = menu->addMenu(tr("&Recent"));
   connect(recent, &QMenu::aboutToShow, this, [this, recent] { show_recent(recent); });
@@ -135,6 +149,14 @@ void MainWindow::build_edit_menu() {
     find->setFocus();
     find->selectAll();
   });
+  menu->addSeparator();
+  connect(add(menu, tr("Fold or unfold this &pass"), QKeySequence(Qt::CTRL | Qt::Key_Period),
+              tr("Knitout: shows the first line of the pass at the cursor")),
+          &QAction::triggered, editor_, &NotationEditor::toggle_fold_at_cursor);
+  connect(add(menu, tr("Fold &all passes"), QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_BracketLeft)),
+          &QAction::triggered, this, [this] { editor_->fold_all(true); });
+  connect(add(menu, tr("U&nfold all passes"), QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_BracketRight)),
+          &QAction::triggered, this, [this] { editor_->fold_all(false); });
 }
 
 void MainWindow::build_view_menu() {
@@ -306,7 +328,7 @@ void MainWindow::build_diagram_bar() {
   });
   connect(slider, &QSlider::valueChanged, this, [this](int count) {
     diagram_->show_acts(count);
-    if (count > 0 && count <= diagram_->acts()) editor_->go_to(diagram_->act_place(count - 1));
+    if (count > 0 && count <= diagram_->acts()) editor_->go_to(diagram_->act_place(count - 1), false);
   });
 }
 

@@ -40,7 +40,7 @@ class MeasuresPanel : public QWidget {
   void show_measures();
   Session& session_;
   QLabel* text_;
-  std::shared_ptr<const RelaxResult> measured_;
+  std::shared_ptr<const Measurements> measured_;
 };
 
 // What is wrong or doubtful; a click goes to the line.

@@ -2,7 +2,8 @@
 find_package(Qt6 QUIET COMPONENTS Test)
 find_program(LOOPWRIGHT_XVFB_RUN xvfb-run)
 if(Qt6Test_FOUND)
-  add_executable(test_view_window tests/window_test.cpp tests/window_test.hpp)
+  add_executable(test_view_window tests/window_test.cpp tests/window_fixture.hpp tests/window_test.hpp
+    tests/window_programmes_test.hpp)
   target_compile_options(test_view_window PRIVATE -O1)
   target_compile_definitions(test_view_window PRIVATE LOOPWRIGHT_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
   target_link_libraries(test_view_window PRIVATE loopwright_view_window Qt6::Test)

@@ -84,6 +84,7 @@ class ClothView : public QOpenGLWidget {
     ClothColours colours;
     std::array<int, 2> repeats{1, 1};
     bool coarse = false;
+    int every = 1;  // control point in the moving scene
   };
   void take_scene(BuiltScene built);
   void ask_for_motion();
@@ -127,8 +128,11 @@ class ClothView : public QOpenGLWidget {
   std::shared_ptr<const YarnScene> scene_,
       moving_scene_;  // of a coarser mesh, for while it moves; may be none
   bool uploaded_ = false, coarse_ = false;
+  bool without_gpu_ = false;
+  int moving_every_ = 1;
   std::vector<double> fed_;
   int scenes_asked_ = 0, scenes_taken_ = 0;
+  std::shared_ptr<std::atomic<bool>> other_document_ = std::make_shared<std::atomic<bool>>(false);
   ClothColours colours_;
   std::array<int, 2> repeats_{1, 1};
   double detail_ = 0;

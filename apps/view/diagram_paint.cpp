@@ -215,9 +215,13 @@ void DiagramView::paint_labels(QPainter& painter, std::size_t p) {
   painter.setPen(QColor(60, 60, 60));
   const bool first = p == 0 || session_.pass(p - 1).course != pass.course;
   const double left = dot(least_slot_, 0).x();
-  if (first)
-    painter.drawText(QRectF(left - 3.0 * pitch_, middle - pitch_ / 2, 1.2 * pitch_, pitch_),
+  // the course stands apart from the yarn, whose name may be a number as well
+  if (first) {
+    painter.setPen(QColor(150, 146, 134));
+    painter.drawText(QRectF(left - 3.3 * pitch_, middle - pitch_ / 2, 1.2 * pitch_, pitch_),
                      Qt::AlignRight | Qt::AlignVCenter, QString::number(pass.course));
+    painter.setPen(QColor(60, 60, 60));
+  }
   QString who;
   for (const int yarn : pass.yarns)
     who += (who.isEmpty() ? QString() : QStringLiteral("+")) +

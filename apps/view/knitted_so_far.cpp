@@ -15,14 +15,14 @@ std::vector<double> fed_until(const Fabric& fabric, const YarnGraph& graph, int 
 }
 
 std::optional<std::vector<YarnRenderer::Run>> runs_until(const YarnScene& scene, const Fabric& fabric,
-                                                         const std::vector<double>& fed) {
+                                                         const std::vector<double>& fed, int every) {
   if (fed.size() != scene.parts.size() || fed.empty()) return std::nullopt;
   std::vector<YarnRenderer::Run> runs;
   for (std::size_t y = 0; y < fed.size(); ++y) {
     const YarnPart& part = scene.parts[y];
-    const auto segments = static_cast<std::uint32_t>(std::ceil(fed[y] - 1e-9));
+    const auto segments = static_cast<std::uint32_t>(std::ceil(fed[y] / every - 1e-9));
     if (segments == 0) continue;
-    const bool whole = segments >= static_cast<std::uint32_t>(fabric.yarns[y].segments());
+    const bool whole = segments >= static_cast<std::uint32_t>(fabric.yarns[y].segments() / every);
     runs.push_back({part.first, whole ? part.count : std::min(part.count, segments * part.per_segment)});
   }
   return runs;

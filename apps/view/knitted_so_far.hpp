@@ -14,8 +14,9 @@ namespace loopwright {
 // 0 where there are none yet.
 std::vector<double> fed_until(const Fabric& fabric, const YarnGraph& graph, int instruction);
 
-// The triangles of the scene up to there; nothing, where `fed` is empty: all.
+// The triangles of the scene up to there; nothing, where `fed` is empty: all. `every`: the scene was made of
+// every k-th control point.
 std::optional<std::vector<YarnRenderer::Run>> runs_until(const YarnScene& scene, const Fabric& fabric,
-                                                         const std::vector<double>& fed);
+                                                         const std::vector<double>& fed, int every = 1);
 
 }  // namespace loopwright

@@ -198,7 +198,10 @@ void MainWindow::show_status() {
       text = tr("Not at rest: %1").arg(QString::fromStdString(moment.message));
       break;
     case ClothStage::stopped:
-      text = moment.fabric ? tr("Stopped after %1 steps; F5 knits anew").arg(moment.iterations)
+      text = moment.fabric ? tr("Stopped after %n step(s); F5 knits anew", "", moment.iterations)
+                                 .replace(QStringLiteral("(s)"), moment.iterations == 1
+                                                                     ? QString()
+                                                                     : QStringLiteral("s"))
                            : tr("Stopped before there was cloth; F5 knits it");
       break;
   }
@@ -223,6 +226,8 @@ void MainWindow::show_title() {
   Document& document = session_.document();
   setWindowTitle(QStringLiteral("%1[*] \u2013 Loopwright").arg(QString::fromStdString(document.name())));
   setWindowModified(document.changed());
+  if (auto* dock = findChild<QDockWidget*>(QStringLiteral("dock notation")))
+    dock->setWindowTitle(document.read_only() ? tr("Notation (shown, not edited)") : tr("Notation"));
 }
 
 void MainWindow::say(const QString& what) {

@@ -41,6 +41,7 @@ Session::Session(QObject* parent) : QObject(parent) {
     read_text();
     if (automatic_ || change.whole) start_cloth(ClothRequest().most_loops, true);
   };
+  read_text();  // of the piece that a new window starts with
 }
 
 Session::~Session() { worker_.cancel(); }

@@ -93,7 +93,7 @@ void StretchPanel::show_points() {
   const bool shears = direction() == StretchDirection::shear;
   Plot plot{"", shears ? "shear, %" : "strain, %", "force per length, N/m", {}};
   if (shears) {
-    PlotCurve shear{"along the courses, on the upper edge", {}, {}};
+    PlotCurve shear{"shear", {}, {}};
     for (const StretchPoint& p : points) {
       shear.x.push_back(100 * p.shear);
       shear.y.push_back(p.shear_force);

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "base/parallel.hpp"
+#include "base/stop.hpp"
 #include "outputs/fuzz.hpp"
 #include "outputs/sky.hpp"
 #include "outputs/tube_mesh.hpp"
@@ -115,6 +116,7 @@ class TubeBuilder {
       const double arc = rings[k].arc * stretch - start;
       add_ring(rings[k], arc);
       if (k > 0) join_last_rings();
+      if (k % 256 == 0) stop_if_told();
       if (!yarn.periodic && arc > repeat_ && k + 1 < rings.size()) {
         start += repeat_;
         add_ring(rings[k], arc - repeat_);

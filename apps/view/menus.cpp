@@ -357,8 +357,11 @@ void MainWindow::build_help_menu() {
 }
 
 void MainWindow::start_tour() {
-  QWizard tour(this);
-  tour.setWindowTitle(tr("Loopwright in five steps"));
+  // beside the work, not before it: what a step says can be tried while it stands there
+  auto* tour = new QWizard(this);
+  tour->setAttribute(Qt::WA_DeleteOnClose);
+  tour->setWindowTitle(tr("Loopwright in five steps"));
+  tour->setOption(QWizard::NoBackButtonOnStartPage);
   const std::vector<std::pair<QString, QString>> steps{
       {tr("1. Write"),
        tr("Left above is the notation: g is a front stitch, e a rear stitch, one line per course. Change "
@@ -380,9 +383,13 @@ void MainWindow::start_tour() {
     auto* label = new QLabel(text, page);
     label->setWordWrap(true);
     (new QVBoxLayout(page))->addWidget(label);
-    tour.addPage(page);
+    tour->addPage(page);
   }
-  tour.exec();
+  tour->setMinimumSize(360, 200);
+  tour->resize(440, 210);
+  const QPoint corner = cloth_->mapToGlobal(QPoint(12, cloth_->height() - 240));
+  tour->move(corner);
+  tour->show();
 }
 
 }  // namespace loopwright

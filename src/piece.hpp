@@ -19,6 +19,11 @@ struct Piece {
   RelaxOptions options;
 };
 
+// The keys of State::texts under which a state keeps the notation that it was knitted from, and that text's
+// suffix.
+inline constexpr const char* state_notation = "notation";
+inline constexpr const char* state_notation_suffix = "notation_suffix";
+
 // What the caller states instead of the file: a sweep over loop lengths, the yarn of a knitout file that
 // names none. In the words of a fabric file's headers: {"Loop-Length", "5.9 mm"}
 // (notation/fabric_headers.hpp; Size and Edges are FabricOptions).

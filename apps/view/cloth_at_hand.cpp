@@ -46,9 +46,8 @@ bool same_part(const Fabric& a, const Fabric& b) {
 double most_change_of_length(const Fabric& from, const Fabric& to, double scale) {
   double most = 0;
   for (std::size_t y = 0; y < from.yarns.size(); ++y)
-    most = std::max(most, std::abs(to.yarns[y].segment_rest_length /
-                                       (from.yarns[y].segment_rest_length * scale) -
-                                   1));
+    most = std::max(
+        most, std::abs(to.yarns[y].segment_rest_length / (from.yarns[y].segment_rest_length * scale) - 1));
   return most;
 }
 
@@ -91,7 +90,8 @@ std::optional<Fabric> start_from_cloth_at_hand(const ClothAtHand& hand, const Kn
   const InterlacingCheck check = check_interlacings(started);
   if (check.intact < check.expected) return std::nullopt;
   constexpr double little = 0.15;  // relax() takes larger changes of length in stages as yarn grows in
-  options.grow_in = most_change_of_length(rest, first, scale) > little || !has_room(hand, started, scale, options);
+  options.grow_in =
+      most_change_of_length(rest, first, scale) > little || !has_room(hand, started, scale, options);
   const FlatPlates& plates = hand.relaxed->plates;
   if (plates.stiffness > 0)
     options.model.plates = {plates.stiffness, plates.low * scale, plates.high * scale};

@@ -18,9 +18,9 @@ struct ClothAtHand {
 // are written does not count.
 bool same_topology(const YarnGraph& a, const YarnGraph& b);
 
-// `first` with the yarn where the cloth at hand has it, and `options` made ready: plates where they stood, and
-// yarn grown in only where it became too thick for its place or its length changed much. Nothing where the
-// loops are others, or where an interlacing would not be whole.
+// `first` with the yarn where the cloth at hand has it, and `options` made ready: plates where they stood,
+// and yarn grown in only where it became too thick for its place or its length changed much. Nothing where
+// the loops are others, or where an interlacing would not be whole.
 std::optional<Fabric> start_from_cloth_at_hand(const ClothAtHand& hand, const Knitting& knitting,
                                                const Fabric& first, RelaxOptions& options);
 

@@ -104,8 +104,7 @@ class ClothJob {
       moments_.note(progress);
       return !cancelled_;
     };
-    if (std::optional<Fabric> started =
-            start_from_relaxed_cell(*moment().knitting, piece_, first, options)) {
+    if (std::optional<Fabric> started = start_from_relaxed_cell(*moment().knitting, piece_, first, options)) {
       first = std::move(*started);
       moment().fabric = std::make_shared<const Fabric>(first);
     }

@@ -25,7 +25,7 @@ struct ClothRequest {
   // Larger pieces are shown as knitted and relaxed only when asked for (0: none is relaxed).
   std::size_t most_loops = 400;
   std::optional<WindowSize> window{};
-  std::filesystem::path cloth_file;  // a saved state or curves of another program, in place of a text
+  std::filesystem::path cloth_file;      // a saved state or curves of another program, in place of a text
   std::optional<ClothAtHand> at_hand{};  // to go on from, where its loops are those of the text
 };
 
@@ -45,13 +45,13 @@ struct ClothMoment {
   ClothStage stage = ClothStage::reading;
   std::shared_ptr<const Diagnostics> diagnostics;  // of notation, machine and topology
   std::shared_ptr<const Knitting> knitting;
-  std::shared_ptr<const Fabric> fabric;         // none: nothing new to show
-  std::shared_ptr<const RelaxOptions> options;  // without callbacks
-  std::shared_ptr<const RelaxResult> relaxed;   // at the end alone
+  std::shared_ptr<const Fabric> fabric;          // none: nothing new to show
+  std::shared_ptr<const RelaxOptions> options;   // without callbacks
+  std::shared_ptr<const RelaxResult> relaxed;    // at the end alone
   std::shared_ptr<const Measurements> measured;  // with `relaxed`; of curves as the file has them
   std::shared_ptr<const KnitoutPasses> passes;   // of knitout
   std::shared_ptr<const std::string> text;       // of a file of cloth: its notation, or what it holds
-  InterlacingCheck interlacings;                // expected < 0: not counted for this moment
+  InterlacingCheck interlacings;                 // expected < 0: not counted for this moment
   int iterations = 0;
   double residual = 0, radius = 0, seconds = 0;
   bool went_on = false;      // from the cloth at hand

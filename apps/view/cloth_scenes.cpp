@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cloth_view.hpp"
 #include "base/stop.hpp"
+#include "cloth_view.hpp"
 #include "knitted_so_far.hpp"
 #include "scene_budget.hpp"
 
@@ -30,7 +30,8 @@ std::array<int, 2> repeats_for(const Fabric& fabric, const Knitting* knitting) {
 template <class Colours>
 void keep_every(Colours& colours, int every) {
   Colours kept;
-  for (std::size_t k = 0; k < colours.size(); k += static_cast<std::size_t>(every)) kept.push_back(colours[k]);
+  for (std::size_t k = 0; k < colours.size(); k += static_cast<std::size_t>(every))
+    kept.push_back(colours[k]);
   colours = std::move(kept);
 }
 
@@ -88,8 +89,8 @@ void ClothView::ask_for_scene() {
                           ? ColourBy::yarn
                           : colour_by_;
   const int serial = ++scenes_asked_;
-  scene_builder_.start([this, serial, other = other_document_, fabric, options, spans, kin, model, by, at_work,
-                        repeats = repeats_](const std::atomic<bool>& cancelled) mutable {
+  scene_builder_.start([this, serial, other = other_document_, fabric, options, spans, kin, model, by,
+                        at_work, repeats = repeats_](const std::atomic<bool>& cancelled) mutable {
     BuiltScene built;
     built.repeats = repeats;
     built.coarse = at_work;

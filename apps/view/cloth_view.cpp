@@ -184,7 +184,8 @@ void ClothView::initializeGL() {
     moving_yarns_ = std::make_unique<YarnRenderer>();
     lines_ = std::make_unique<StructurePainter>();
     // Mesa's names for a processor that draws
-    const QByteArray drawn_by(reinterpret_cast<const char*>(context()->functions()->glGetString(GL_RENDERER)));
+    const QByteArray drawn_by(
+        reinterpret_cast<const char*>(context()->functions()->glGetString(GL_RENDERER)));
     without_gpu_ = drawn_by.contains("llvmpipe") || drawn_by.contains("softpipe");
     uploaded_ = false;
     buffer_.reset();

@@ -73,7 +73,7 @@ class ClothView : public QOpenGLWidget {
     StretchDirection edge = StretchDirection::course;
     double edge_side = 1;      // +1: right or top edge
     bool edge_chosen = false;  // whether its first way said what it is
-    Vec3 held;             // place that is pulled
+    Vec3 held;                 // place that is pulled
   };
   void follow();
   void moved_by_hand();

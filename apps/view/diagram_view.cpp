@@ -233,9 +233,7 @@ void DiagramView::show_acts(int count) {
   shown_acts_ = count >= acts() ? -1 : count;
   // the cloth as far as it is knitted: a knitout programme is knitted once, from its first line to its last
   if (const auto& knitout = session_.knitout())
-    session_.knit_until(shown_acts_ < 0   ? -1
-                        : shown_acts_ == 0 ? 0
-                                           : knitout->instruction(shown_acts_ - 1));
+    session_.knit_until(shown_acts_ < 0 ? -1 : shown_acts_ == 0 ? 0 : knitout->instruction(shown_acts_ - 1));
   if (count > 0 && count <= acts()) show_pass(act(count - 1).pass);
   viewport()->update();
 }

@@ -20,7 +20,9 @@ bool continues_a_character(char c) { return (static_cast<unsigned char>(c) & 0xC
 
 Document::Document() { open_text(std::string(empty_fabric), ".verm"); }
 
-std::string Document::name() const { return path_.empty() ? "untitled.verm" : path_.filename().string(); }
+std::string Document::name() const {
+  return path_.empty() ? "untitled" + suffix() : path_.filename().string();
+}
 
 std::string Document::suffix() const { return kind_ == DocumentKind::knitout ? ".k" : ".verm"; }
 
@@ -39,7 +41,8 @@ void Document::open(const std::filesystem::path& path) {
     throw FileError(path.string() + ": " +
                     (diagnostics.list().empty() ? "cannot be read" : diagnostics.list().front().message));
   if (first_byte_not_utf8(*text) != std::string_view::npos)
-    throw FileError(path.string() + ": this is no text in UTF-8; open a fabric file (.verm), knitout (.k), a "
+    throw FileError(path.string() +
+                    ": this is no text in UTF-8; open a fabric file (.verm), knitout (.k), a "
                     "saved state (.h5) or curves (.bcc, .yarns, .obj)");
   open_text(std::move(*text), path.extension().string(), path);
 }

@@ -22,10 +22,9 @@ std::string label_of(const Program& program, const ProgramPass& run) {
   if (run.yarn) label += first.direction == Direction::left ? " \u2190 " : " \u2192 ";
   bool more = false;
   for (const auto& [op, name] : kinds) {
-    const auto count = std::count_if(
-        program.instructions.begin() + static_cast<std::ptrdiff_t>(run.begin),
-        program.instructions.begin() + static_cast<std::ptrdiff_t>(run.end),
-        [wanted = op](const Instruction& each) { return each.op == wanted; });
+    const auto count = std::count_if(program.instructions.begin() + static_cast<std::ptrdiff_t>(run.begin),
+                                     program.instructions.begin() + static_cast<std::ptrdiff_t>(run.end),
+                                     [wanted = op](const Instruction& each) { return each.op == wanted; });
     if (count == 0) continue;
     label += (more ? ", " : "") + std::to_string(count) + " " + name;
     more = true;

@@ -1,5 +1,5 @@
-// A piece on its way: what of its yarns is knitted when the machine has come to an instruction. Loops have the
-// places that they have in the whole piece.
+// A piece on its way: what of its yarns is knitted when the machine has come to an instruction. Loops have
+// the places that they have in the whole piece.
 #pragma once
 #include <optional>
 #include <vector>

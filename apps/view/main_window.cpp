@@ -199,9 +199,8 @@ void MainWindow::show_status() {
       break;
     case ClothStage::stopped:
       text = moment.fabric ? tr("Stopped after %n step(s); F5 knits anew", "", moment.iterations)
-                                 .replace(QStringLiteral("(s)"), moment.iterations == 1
-                                                                     ? QString()
-                                                                     : QStringLiteral("s"))
+                                 .replace(QStringLiteral("(s)"),
+                                          moment.iterations == 1 ? QString() : QStringLiteral("s"))
                            : tr("Stopped before there was cloth; F5 knits it");
       break;
   }

@@ -54,16 +54,21 @@ void MainWindow::build_file_menu() {
   connect(fresh, &QMenu::aboutToShow, this, [this, fresh] {
     if (fresh->isEmpty()) add_templates(fresh);
   });
+  QMenu* examples = menu->addMenu(tr("E&xamples"));
+  connect(examples, &QMenu::aboutToShow, this, [this, examples] {
+    if (examples->isEmpty()) add_examples(examples);
+  });
   connect(add(menu, tr("New &plain"), QKeySequence::New), &QAction::triggered, this, [this] {
     if (may_leave())
       session_.document().open_text(std::string(Document::empty_fabric), ".verm"), show_title();
   });
   connect(add(menu, tr("&Open \u2026"), QKeySequence::Open), &QAction::triggered, this, [this] {
     if (!may_leave()) return;
-    const QString path = QFileDialog::getOpenFileName(this, tr("Open"), QString(),
-                                                      tr("Notations and cloth (*.verm *.k *.knitout *.h5 *.bcc *.yarns *.obj);;"
-                                                         "Notations (*.verm *.k *.knitout);;Saved states (*.h5);;"
-                                                         "Curves (*.bcc *.yarns *.obj);;All files (*)"));
+    const QString path = QFileDialog::getOpenFileName(
+        this, tr("Open"), QString(),
+        tr("Notations and cloth (*.verm *.k *.knitout *.h5 *.bcc *.yarns *.obj);;"
+           "Notations (*.verm *.k *.knitout);;Saved states (*.h5);;"
+           "Curves (*.bcc *.yarns *.obj);;All files (*)"));
     if (!path.isEmpty()) open(path);
   });
   QAction* from_state = add(menu, tr("New from this &notation"), {},
@@ -114,6 +119,19 @@ void MainWindow::add_templates(QMenu* menu) {
       show_title();
     });
   }
+}
+
+// Those of the project, built in as well: opened as new files.
+void MainWindow::add_examples(QMenu* menu) {
+  const QDir library(QStringLiteral(":/examples"));
+  for (const QFileInfo& file : library.entryInfoList(QDir::Files, QDir::Name))
+    connect(menu->addAction(file.fileName()), &QAction::triggered, this, [this, path = file.filePath()] {
+      QFile source(path);
+      if (!may_leave() || !source.open(QIODevice::ReadOnly)) return;
+      session_.document().open_text(source.readAll().toStdString(),
+                                    "." + QFileInfo(path).suffix().toStdString());
+      show_title();
+    });
 }
 
 void MainWindow::show_recent(QMenu* menu) {

@@ -13,7 +13,7 @@ class MomentTeller {
   ClothMoment& moment() { return moment_; }
   void show();  // the moment as it is
   void publish(const Fabric& fabric);
-  void fail(const std::string& why);  // nothing to show
+  void fail(const std::string& why);    // nothing to show
   void stop(const std::string& where);  // told to stop before there was anything to show
   void count(const Fabric& fabric);
   void note(const RelaxProgress& progress);

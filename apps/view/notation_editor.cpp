@@ -185,7 +185,8 @@ SourceLocation NotationEditor::location_of(const QTextCursor& cursor) const {
 
 void NotationEditor::go_to(SourceLocation at, bool opens) {
   if (at.line <= 0) return;
-  if (const auto fold = fold_of(at.line); fold && folded_[*fold] && at.line > fold_lines()[*fold].first_line) {
+  if (const auto fold = fold_of(at.line);
+      fold && folded_[*fold] && at.line > fold_lines()[*fold].first_line) {
     if (opens)
       set_folded(*fold, false);
     else

@@ -7,10 +7,10 @@
 namespace loopwright {
 namespace {
 
-constexpr double most_vertices = 4e6;           // 150 MB
+constexpr double most_vertices = 4e6;  // 150 MB
 constexpr double most_vertices_without_gpu = 1.2e6;
 constexpr std::size_t most_indices_without_gpu = 3'000'000;
-constexpr double most_shaded_vertices = 5e5;    // some microseconds each
+constexpr double most_shaded_vertices = 5e5;  // some microseconds each
 constexpr std::size_t most_moving_segments = 40'000;
 
 }  // namespace
@@ -27,8 +27,8 @@ double vertices_of(const Fabric& fabric, double pixels_per_diameter) {
   double all = 0;
   for (const FabricYarn& yarn : fabric.yarns) {
     const double radius = std::max(yarn.diameter * pixels_per_diameter / 2, 0.5);
-    const double sides =
-        std::clamp(std::ceil(std::numbers::pi / std::acos(std::clamp(1 - 0.25 / radius, 0.0, 0.999))), 5.0, 40.0);
+    const double sides = std::clamp(
+        std::ceil(std::numbers::pi / std::acos(std::clamp(1 - 0.25 / radius, 0.0, 0.999))), 5.0, 40.0);
     const double rings = std::clamp(std::ceil(yarn.segment_rest_length / chord), 1.0, 16.0);
     all += yarn.segments() * rings * (sides + 1);
   }
@@ -52,8 +52,8 @@ bool affords_shadows(const YarnScene& scene, bool without_gpu) {
 SparseFabric sparse_fabric(const Fabric& fabric) {
   SparseFabric sparse{fabric, 1};
   const std::size_t segments = segments_of(fabric);
-  sparse.every = static_cast<int>(
-      std::clamp((segments + most_moving_segments - 1) / most_moving_segments, std::size_t{1}, std::size_t{4}));
+  sparse.every = static_cast<int>(std::clamp((segments + most_moving_segments - 1) / most_moving_segments,
+                                             std::size_t{1}, std::size_t{4}));
   if (sparse.every == 1) return sparse;
   for (FabricYarn& yarn : sparse.fabric.yarns) {
     const std::vector<Vec3> all = std::move(yarn.control_points);

@@ -184,9 +184,10 @@ void Session::cancel() { worker_.cancel(); }
 
 bool Session::edit_notation(const QString& what, const std::function<std::string(Vermiculation&)>& edit) {
   if (document_.read_only()) {
-    emit refused(document_.kind() == DocumentKind::knitout
-                     ? tr("A knitout file is shown as it is; write a fabric file to change it.")
-                     : tr("A file of cloth is shown as it is; File > New from this notation opens its notation."));
+    emit refused(
+        document_.kind() == DocumentKind::knitout
+            ? tr("A knitout file is shown as it is; write a fabric file to change it.")
+            : tr("A file of cloth is shown as it is; File > New from this notation opens its notation."));
     return false;
   }
   if (!notation_) {

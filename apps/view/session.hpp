@@ -36,7 +36,8 @@ class Session : public QObject {
   std::size_t passes() const;
   const DiagramPass& pass(std::size_t p) const;
   const std::shared_ptr<const KnitoutPasses>& knitout() const { return knitout_; }  // none for fabric files
-  // Knitting needle by needle: loops that this instruction of the programme or an earlier one formed; -1: all.
+  // Knitting needle by needle: loops that this instruction of the programme or an earlier one formed; -1:
+  // all.
   int knitted_until() const { return knitted_until_; }
   void knit_until(int instruction);
   bool diagram_is_current() const { return diagram_is_current_; }

@@ -123,8 +123,9 @@ void StretchPanel::write_curve(const QString& path) const {
   table.columns = {"course_strain",      "wale_strain",         "shear",        "course_force_N_per_m",
                    "wale_force_N_per_m", "shear_force_N_per_m", "interlacings", "interlacings_intact"};
   for (const StretchPoint& p : session_.stretch_points())
-    table.rows.push_back({p.course_strain, p.wale_strain, p.shear, p.course_force, p.wale_force, p.shear_force,
-                          static_cast<double>(p.interlacings), static_cast<double>(p.interlacings_intact)});
+    table.rows.push_back({p.course_strain, p.wale_strain, p.shear, p.course_force, p.wale_force,
+                          p.shear_force, static_cast<double>(p.interlacings),
+                          static_cast<double>(p.interlacings_intact)});
   write_csv(path.toStdString(), table);
 }
 

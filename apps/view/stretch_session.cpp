@@ -56,10 +56,10 @@ StretchPoint StretchSession::go_to(double strain, const std::function<bool(const
   for (int k = 1; k <= steps; ++k) {
     const double to = from + (strain - from) * k / steps;
     const Fabric& now = at_.fabric;
-    const Fabric moved = deformed(now, pulls_courses(direction_) ? rest_.width * (1 + to) : now.width,
-                                  pulls_wales(direction_) ? rest_.height * (1 + to) : now.height,
-                                  direction_ == StretchDirection::shear ? rest_.skew + to * rest_.height
-                                                                        : now.skew);
+    const Fabric moved =
+        deformed(now, pulls_courses(direction_) ? rest_.width * (1 + to) : now.width,
+                 pulls_wales(direction_) ? rest_.height * (1 + to) : now.height,
+                 direction_ == StretchDirection::shear ? rest_.skew + to * rest_.height : now.skew);
     options_.history = at_.history;
     at_ = relax(moved, options_);
     strain_ = to;

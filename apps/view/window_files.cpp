@@ -80,8 +80,9 @@ bool MainWindow::save_to(const QString& path) {
 
 bool MainWindow::save() {
   if (session_.document().kind() == DocumentKind::cloth) {
-    say(tr("A file of cloth is shown as it is: File > Export writes a state anew, File > New from this notation "
-           "opens its notation."));
+    say(tr(
+        "A file of cloth is shown as it is: File > Export writes a state anew, File > New from this notation "
+        "opens its notation."));
     return false;
   }
   const auto& path = session_.document().path();
@@ -120,8 +121,8 @@ void MainWindow::export_to(const QString& path) {
   }
   if (suffix == QLatin1String("svg")) {
     const auto& knitting = session_.moment().knitting;
-    write_diagram_svg(file, session_.knitout() && knitting ? needle_diagram(knitting->program)
-                                                           : session_.diagram());
+    write_diagram_svg(
+        file, session_.knitout() && knitting ? needle_diagram(knitting->program) : session_.diagram());
     return;
   }
   if (!session_.fabric()) throw std::invalid_argument("there is no cloth to export yet");

@@ -21,8 +21,9 @@ QString facts_of_program(const Knitting& knitting) {
   for (const GraphYarn& yarn : knitting.graph.yarns)
     if (!yarn.loops.empty() && yarn.carrier.valid()) used.insert(yarn.carrier.position());
   for (const std::size_t carrier : used) {
-    const QString data =
-        carrier < program.yarns.size() ? QString::fromStdString(yarn_value(program.yarns[carrier])) : QString();
+    const QString data = carrier < program.yarns.size()
+                             ? QString::fromStdString(yarn_value(program.yarns[carrier]))
+                             : QString();
     rows += row(QObject::tr("Carrier %1").arg(QString::fromStdString(program.carriers[carrier])),
                 data.isEmpty() ? QObject::tr("nothing said") : data);
   }
@@ -31,8 +32,9 @@ QString facts_of_program(const Knitting& knitting) {
   if (settings.loop_length_mm)
     rows += row(QObject::tr("Loop length"), QObject::tr("%1 mm").arg(*settings.loop_length_mm));
   return QStringLiteral("<table>%1</table><p>%2</p>")
-      .arg(rows, QObject::tr("These stand in the file's headers, such as <tt>;;Yarn-1: wool 2/28 Nm</tt> and "
-                             "<tt>;;X-Loop-Length: 5.9 mm</tt>. A change by another editor is taken at once."));
+      .arg(rows,
+           QObject::tr("These stand in the file's headers, such as <tt>;;Yarn-1: wool 2/28 Nm</tt> and "
+                       "<tt>;;X-Loop-Length: 5.9 mm</tt>. A change by another editor is taken at once."));
 }
 
 QString facts_of_material(const ClothMoment& moment) {
@@ -49,8 +51,7 @@ QString facts_of_material(const ClothMoment& moment) {
                 QObject::tr("%1 B/d\u00b2").arg(material.stretch_stiffness, 0, 'g', 4));
   }
   rows += row(QObject::tr("Friction"), QString::number(material.friction, 'g', 3));
-  return QStringLiteral("<table>%1</table><p>%2</p>")
-      .arg(rows, QObject::tr("As the file of cloth says it."));
+  return QStringLiteral("<table>%1</table><p>%2</p>").arg(rows, QObject::tr("As the file of cloth says it."));
 }
 
 }  // namespace

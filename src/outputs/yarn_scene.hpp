@@ -30,8 +30,8 @@ struct SceneVertex {
   std::array<std::uint8_t, 4> colour;  // sRGB, and the open share of the sky, times 255
 };
 
-// A yarn's triangles in YarnScene::indices: those of segment k of its spline start at first + k * per_segment;
-// after the last come its two ends.
+// A yarn's triangles in YarnScene::indices: those of segment k of its spline start at first + k *
+// per_segment; after the last come its two ends.
 struct YarnPart {
   std::uint32_t first = 0, per_segment = 0, count = 0;
 };

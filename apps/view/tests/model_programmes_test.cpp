@@ -68,7 +68,8 @@ TEST(ClothAtHand, OtherYarnDataComeToTheSizesOfAFreshStart) {
     EXPECT_EQ(went_on.interlacings.intact, went_on.interlacings.expected);
     EXPECT_FALSE(went_on.broken());
     EXPECT_NEAR(went_on.measured->width_mm, fresh.measured->width_mm, 0.03 * fresh.measured->width_mm) << to;
-    EXPECT_NEAR(went_on.measured->height_mm, fresh.measured->height_mm, 0.03 * fresh.measured->height_mm) << to;
+    EXPECT_NEAR(went_on.measured->height_mm, fresh.measured->height_mm, 0.03 * fresh.measured->height_mm)
+        << to;
   }
 }
 

@@ -103,14 +103,15 @@ class ProgrammeTest : public WindowFixture {
     for (const Fold& fold : folds) hidden += fold.last_line - fold.first_line;
     editor.fold_all(true);
     QCOMPARE(visible_lines(), editor.document()->blockCount() - hidden);
-    QTest::qWait(200);
-    keep_picture("folded.png");
     // the slider stays at the first line of a folded pass
     auto* slider = window_->findChild<QSlider*>(QStringLiteral("acts"));
     slider->setValue(slider->maximum() / 2);
     const int at = editor.textCursor().blockNumber() + 1;
-    QVERIFY(std::any_of(folds.begin(), folds.end(), [at](const Fold& fold) { return fold.first_line == at; }));
+    QVERIFY(
+        std::any_of(folds.begin(), folds.end(), [at](const Fold& fold) { return fold.first_line == at; }));
     QVERIFY(editor.folded(0));
+    QTest::qWait(pictures_folder().isEmpty() ? 0 : 500);
+    keep_picture("folded.png");
     // a message or a search opens it
     editor.go_to({folds[1].last_line, 0});
     QVERIFY(!editor.folded(1));
@@ -313,8 +314,11 @@ class ProgrammeTest : public WindowFixture {
     QDropEvent drop({40, 40}, Qt::CopyAction, &files, Qt::LeftButton, Qt::NoModifier);
     QApplication::sendEvent(window_.get(), &drop);
     QVERIFY(window_->windowTitle().contains(QStringLiteral("dropped.verm")));
-    QVERIFY(QSettings().value(QStringLiteral("recent")).toStringList().front().endsWith(
-        QStringLiteral("dropped.verm")));
+    QVERIFY(QSettings()
+                .value(QStringLiteral("recent"))
+                .toStringList()
+                .front()
+                .endsWith(QStringLiteral("dropped.verm")));
     QMenu* recent = nullptr;
     for (QMenu* menu : window_->findChildren<QMenu*>())
       if (menu->title() == QStringLiteral("&Recent")) recent = menu;
@@ -349,6 +353,43 @@ class ProgrammeTest : public WindowFixture {
     QTRY_COMPARE(messages->topLevelItemCount(), 1);
     emit messages->itemClicked(messages->topLevelItem(0), 0);
     QCOMPARE(window_->editor().textCursor().blockNumber() + 1, 11);
+  }
+
+  void ten_thousand_loops_turn() {
+    if (!qEnvironmentVariableIsSet("LOOPWRIGHT_VIEW_FIGURES"))
+      QSKIP("set LOOPWRIGHT_VIEW_FIGURES to measure");
+    window_->session().choose_piece(PieceChoice::whole);
+    QVERIFY(
+        window_->open(file("large.verm",
+                           ";!vermiculation-1\n;;Gauge: 12\n;;Bed-Gap: 2 mm\n;;Yarn-A: wool 2/28 Nm\n"
+                           ";;Loop-Length: 5.9 mm\n;;Size: 100 wales x 100 courses\n;;Edges: held\nge\n")));
+    Heartbeat heart;
+    QElapsedTimer clock;
+    clock.start();
+    ClothView& cloth = window_->cloth();
+    QTRY_VERIFY_WITH_TIMEOUT(!window_->session().working() && cloth.scene_is_current(), 60000);
+    QCOMPARE(window_->session().fabric()->loops.size(), std::size_t{10000});
+    const qint64 ready = clock.elapsed();
+    QTest::qWait(4000);  // the coarse picture for movement
+    QTest::mousePress(&cloth, Qt::RightButton, {}, {200, 200});
+    const int drawn = cloth.frames_drawn();
+    clock.restart();
+    for (int i = 0; clock.elapsed() < 3000; ++i) {
+      const QPointF at(200 + 4 * (i % 60), 200);
+      QMouseEvent move(QEvent::MouseMove, at, at, Qt::NoButton, Qt::RightButton, Qt::NoModifier);
+      QApplication::sendEvent(&cloth, &move);
+      QCoreApplication::processEvents();
+    }
+    const double turning = static_cast<double>(clock.elapsed()) * 1e-3;
+    const int frames = cloth.frames_drawn() - drawn;
+    keep_picture("large_moving.png");
+    QTest::mouseRelease(&cloth, Qt::RightButton, {}, {200, 200});
+    QTest::qWait(2500);
+    keep_picture("large_still.png");
+    qInfo(
+        "10,000 loops: shown after %lld ms; turning %.1f frames a second in %d x %d; still picture %.0f ms; "
+        "longest wait %lld ms",
+        ready, frames / turning, cloth.width(), cloth.height(), cloth.last_frame_ms(), heart.longest());
   }
 
   // How long the window is deaf while large files are worked on; needs the corpus of real programmes.

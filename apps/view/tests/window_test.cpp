@@ -20,8 +20,8 @@ int main(int argc, char** argv) {
   // a test that is named is of one of the two
   for (QObject* test : {static_cast<QObject*>(&window), static_cast<QObject*>(&programmes)}) {
     const QByteArray named = argc > 1 ? QByteArray(argv[1]) : QByteArray();
-    const bool has = named.isEmpty() || named.startsWith('-') ||
-                     test->metaObject()->indexOfSlot(named + "()") >= 0;
+    const bool has =
+        named.isEmpty() || named.startsWith('-') || test->metaObject()->indexOfSlot(named + "()") >= 0;
     if (has) failed += QTest::qExec(test, argc, argv);
   }
   return failed;

@@ -1,7 +1,6 @@
 // Menus and tool bars of the window.
 #include <QActionGroup>
 #include <QComboBox>
-#include <QDesktopServices>
 #include <QDir>
 #include <QFileDialog>
 #include <QFileInfo>
@@ -16,7 +15,6 @@
 #include <QStatusBar>
 #include <QToolBar>
 #include <QVBoxLayout>
-#include <QWizard>
 #include <algorithm>
 
 #include "main_window.hpp"
@@ -51,13 +49,11 @@ void add_choices(QMenu* menu, QObject* parent,
 void MainWindow::build_file_menu() {
   QMenu* menu = menuBar()->addMenu(tr("&File"));
   QMenu* fresh = menu->addMenu(tr("&New from a structure"));
-  connect(fresh, &QMenu::aboutToShow, this, [this, fresh] {
-    if (fresh->isEmpty()) add_templates(fresh);
-  });
+  connect(fresh, &QMenu::aboutToShow, this,
+          [this, fresh] { add_built_in(fresh, QStringLiteral(":/structures")); });
   QMenu* examples = menu->addMenu(tr("E&xamples"));
-  connect(examples, &QMenu::aboutToShow, this, [this, examples] {
-    if (examples->isEmpty()) add_examples(examples);
-  });
+  connect(examples, &QMenu::aboutToShow, this,
+          [this, examples] { add_built_in(examples, QStringLiteral(":/examples")); });
   connect(add(menu, tr("New &plain"), QKeySequence::New), &QAction::triggered, this, [this] {
     if (may_leave())
       session_.document().open_text(std::string(Document::empty_fabric), ".verm"), show_title();
@@ -106,32 +102,21 @@ void MainWindow::build_file_menu() {
   connect(add(menu, tr("&Quit"), QKeySequence::Quit), &QAction::triggered, this, &QWidget::close);
 }
 
-// The library of structures is built in.
-void MainWindow::add_templates(QMenu* menu) {
-  const QDir library(QStringLiteral(":/structures"));
-  for (const QFileInfo& file : library.entryInfoList({QStringLiteral("*.verm")}, QDir::Files, QDir::Name)) {
+// The library of structures and the project's examples are built in; they open as new files.
+void MainWindow::add_built_in(QMenu* menu, const QString& folder) {
+  if (!menu->isEmpty()) return;
+  for (const QFileInfo& file : QDir(folder).entryInfoList(QDir::Files, QDir::Name)) {
     QString name = file.completeBaseName();
     name.replace(QLatin1Char('_'), QLatin1Char(' '));
+    if (file.suffix() != QLatin1String("verm")) name += QStringLiteral(" (%1)").arg(file.suffix());
     connect(menu->addAction(name), &QAction::triggered, this, [this, path = file.filePath()] {
-      QFile source(path);
-      if (!may_leave() || !source.open(QIODevice::ReadOnly)) return;
-      session_.document().open_text(source.readAll().toStdString(), ".verm");
-      show_title();
-    });
-  }
-}
-
-// Those of the project, built in as well: opened as new files.
-void MainWindow::add_examples(QMenu* menu) {
-  const QDir library(QStringLiteral(":/examples"));
-  for (const QFileInfo& file : library.entryInfoList(QDir::Files, QDir::Name))
-    connect(menu->addAction(file.fileName()), &QAction::triggered, this, [this, path = file.filePath()] {
       QFile source(path);
       if (!may_leave() || !source.open(QIODevice::ReadOnly)) return;
       session_.document().open_text(source.readAll().toStdString(),
                                     "." + QFileInfo(path).suffix().toStdString());
       show_title();
     });
+  }
 }
 
 void MainWindow::show_recent(QMenu* menu) {
@@ -348,66 +333,6 @@ void MainWindow::build_diagram_bar() {
     diagram_->show_acts(count);
     if (count > 0 && count <= diagram_->acts()) editor_->go_to(diagram_->act_place(count - 1), false);
   });
-}
-
-void MainWindow::build_help_menu() {
-  QMenu* menu = menuBar()->addMenu(tr("&Help"));
-  connect(menu->addAction(tr("&Tour")), &QAction::triggered, this, &MainWindow::start_tour);
-  connect(menu->addAction(tr("&Keys and mouse")), &QAction::triggered, this, [this] {
-    QMessageBox::information(
-        this, tr("Keys and mouse"),
-        tr("<b>Cloth</b>: left click chooses a loop, left drag turns; wheel zooms; the middle button pans "
-           "(FreeCAD) or "
-           "turns (Blender); right drag turns. 1 front, 2 left, 3 top, 4 corner, 5 back, 0 or double click "
-           "fits. "
-           "Drag an edge of cloth at rest to stretch it, Ctrl+drag a yarn to pull it; in the structure style "
-           "drag a binding point.<br><br>"
-           "<b>Diagram</b>: arrows move, letters (g e v n . - t T s S d D) work the needle, Shift+arrows "
-           "select, "
-           "Ctrl+C, Ctrl+V, Ctrl+R repeat, Insert a course, Shift+Insert a wale.<br><br>"
-           "<b>Cloth menu</b>: F5 knits again, F6 relaxes a large piece, Esc cancels."));
-  });
-  connect(menu->addAction(tr("&About")), &QAction::triggered, this, [this] {
-    QMessageBox::about(this, tr("Loopwright"),
-                       tr("Loopwright " LOOPWRIGHT_VERSION
-                          ": from a knitting notation to relaxed cloth.\nApache License 2.0."));
-  });
-}
-
-void MainWindow::start_tour() {
-  // beside the work, not before it: what a step says can be tried while it stands there
-  auto* tour = new QWizard(this);
-  tour->setAttribute(Qt::WA_DeleteOnClose);
-  tour->setWindowTitle(tr("Loopwright in five steps"));
-  tour->setOption(QWizard::NoBackButtonOnStartPage);
-  const std::vector<std::pair<QString, QString>> steps{
-      {tr("1. Write"),
-       tr("Left above is the notation: g is a front stitch, e a rear stitch, one line per course. Change "
-          "a letter and watch the cloth.")},
-      {tr("2. Draw"),
-       tr("Left below is the same as a needle diagram. Take the tool Stitch or Tuck and click a needle; "
-          "the text follows, and Ctrl+Z takes it back.")},
-      {tr("3. Look"),
-       tr("The cloth in the middle is the yarn in equilibrium. Turn it with the mouse, press 1 to 4 for "
-          "views, colour it by tension in the View menu.")},
-      {tr("4. Choose"),
-       tr("Click a loop: its letter and needle are marked, and the Loop panel tells what it is.")},
-      {tr("5. Pull"),
-       tr("Move the slider under Stretch, or drag an edge of the cloth. The status line always says "
-          "whether all interlacings are whole.")}};
-  for (const auto& [title, text] : steps) {
-    auto* page = new QWizardPage;
-    page->setTitle(title);
-    auto* label = new QLabel(text, page);
-    label->setWordWrap(true);
-    (new QVBoxLayout(page))->addWidget(label);
-    tour->addPage(page);
-  }
-  tour->setMinimumSize(360, 200);
-  tour->resize(440, 210);
-  const QPoint corner = cloth_->mapToGlobal(QPoint(12, cloth_->height() - 240));
-  tour->move(corner);
-  tour->show();
 }
 
 }  // namespace loopwright

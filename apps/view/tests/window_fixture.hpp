@@ -55,6 +55,36 @@ inline double difference(const QImage& a, const QImage& b, int by) {
   return static_cast<double>(apart) / (static_cast<double>(a.width()) * a.height());
 }
 
+// Plain knitting to and fro with one carrier.
+inline std::string plain_knitout(int needles, int courses) {
+  std::string text = ";!knitout-2\n;;Carriers: 1\ninhook 1\n";
+  for (int course = 0; course < courses; ++course)
+    for (int k = 0; k < needles; ++k) {
+      const bool left = course % 2 == 0;
+      text += std::string(course == 0 ? "tuck " : "knit ") + (left ? "- f" : "+ f") +
+              std::to_string(left ? needles - k : k + 1) + " 1\n";
+      if (course == 1 && k + 1 == needles) text += "releasehook 1\n";
+    }
+  return text + "outhook 1\n";
+}
+
+// The longest time in which the window's thread did nothing for anybody, in ms.
+class Heartbeat : public QObject {
+ public:
+  Heartbeat() {
+    startTimer(1, Qt::PreciseTimer);
+    last_.start();
+  }
+  qint64 longest() const { return longest_; }
+
+ protected:
+  void timerEvent(QTimerEvent*) override { longest_ = std::max(longest_, last_.restart()); }
+
+ private:
+  QElapsedTimer last_;
+  qint64 longest_ = 0;
+};
+
 // Opens a window before every test and closes it after.
 class WindowFixture : public QObject {
   Q_OBJECT
@@ -85,6 +115,26 @@ class WindowFixture : public QObject {
     QImage picture = window_->screen()->grabWindow(window_->winId()).toImage();
     if (picture.width() > 1600) picture = picture.scaledToWidth(1600, Qt::SmoothTransformation);
     picture.save(pictures_folder() + QLatin1Char('/') + QLatin1String(name));
+  }
+
+  // Frames a second while the right button turns the cloth.
+  double turning_rate(int milliseconds) {
+    ClothView& cloth = window_->cloth();
+    QTest::mousePress(&cloth, Qt::RightButton, {}, {200, 200});
+    const int drawn = cloth.frames_drawn();
+    QElapsedTimer clock;
+    clock.start();
+    for (int i = 0; clock.elapsed() < milliseconds; ++i) {
+      // Qt Test's moves carry no button, the window's own do
+      const QPointF at(200 + 4 * (i % 60), 200);
+      QMouseEvent move(QEvent::MouseMove, at, at, Qt::NoButton, Qt::RightButton, Qt::NoModifier);
+      QApplication::sendEvent(&cloth, &move);
+      QCoreApplication::processEvents();
+    }
+    const double seconds = static_cast<double>(clock.elapsed()) * 1e-3;
+    const int frames = cloth.frames_drawn() - drawn;
+    QTest::mouseRelease(&cloth, Qt::RightButton, {}, {200, 200});
+    return frames / seconds;
   }
 
  private slots:

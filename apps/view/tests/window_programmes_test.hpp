@@ -16,36 +16,6 @@
 
 namespace loopwright {
 
-// Plain knitting to and fro with one carrier.
-inline std::string plain_knitout(int needles, int courses) {
-  std::string text = ";!knitout-2\n;;Carriers: 1\ninhook 1\n";
-  for (int course = 0; course < courses; ++course)
-    for (int k = 0; k < needles; ++k) {
-      const bool left = course % 2 == 0;
-      text += std::string(course == 0 ? "tuck " : "knit ") + (left ? "- f" : "+ f") +
-              std::to_string(left ? needles - k : k + 1) + " 1\n";
-      if (course == 1 && k + 1 == needles) text += "releasehook 1\n";
-    }
-  return text + "outhook 1\n";
-}
-
-// The longest time in which the window's thread did nothing for anybody, in ms.
-class Heartbeat : public QObject {
- public:
-  Heartbeat() {
-    startTimer(1, Qt::PreciseTimer);
-    last_.start();
-  }
-  qint64 longest() const { return longest_; }
-
- protected:
-  void timerEvent(QTimerEvent*) override { longest_ = std::max(longest_, last_.restart()); }
-
- private:
-  QElapsedTimer last_;
-  qint64 longest_ = 0;
-};
-
 class ProgrammeTest : public WindowFixture {
   Q_OBJECT
 
@@ -371,25 +341,14 @@ class ProgrammeTest : public WindowFixture {
     QCOMPARE(window_->session().fabric()->loops.size(), std::size_t{10000});
     const qint64 ready = clock.elapsed();
     QTest::qWait(4000);  // the coarse picture for movement
-    QTest::mousePress(&cloth, Qt::RightButton, {}, {200, 200});
-    const int drawn = cloth.frames_drawn();
-    clock.restart();
-    for (int i = 0; clock.elapsed() < 3000; ++i) {
-      const QPointF at(200 + 4 * (i % 60), 200);
-      QMouseEvent move(QEvent::MouseMove, at, at, Qt::NoButton, Qt::RightButton, Qt::NoModifier);
-      QApplication::sendEvent(&cloth, &move);
-      QCoreApplication::processEvents();
-    }
-    const double turning = static_cast<double>(clock.elapsed()) * 1e-3;
-    const int frames = cloth.frames_drawn() - drawn;
+    const double rate = turning_rate(3000);
     keep_picture("large_moving.png");
-    QTest::mouseRelease(&cloth, Qt::RightButton, {}, {200, 200});
     QTest::qWait(2500);
     keep_picture("large_still.png");
     qInfo(
         "10,000 loops: shown after %lld ms; turning %.1f frames a second in %d x %d; still picture %.0f ms; "
         "longest wait %lld ms",
-        ready, frames / turning, cloth.width(), cloth.height(), cloth.last_frame_ms(), heart.longest());
+        ready, rate, cloth.width(), cloth.height(), cloth.last_frame_ms(), heart.longest());
   }
 
   // How long the window is deaf while large files are worked on; needs the corpus of real programmes.

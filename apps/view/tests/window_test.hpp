@@ -362,21 +362,9 @@ class WindowTest : public WindowFixture {
           pictures, seconds, pictures / seconds);
     ClothView& cloth = window_->cloth();
     QTest::qWait(500);
-    QTest::mousePress(&cloth, Qt::RightButton, {}, {200, 200});
-    const int drawn = cloth.frames_drawn();
-    clock.restart();
-    for (int i = 0; clock.elapsed() < 2000; ++i) {
-      // Qt Test's moves carry no button, the window's own do
-      const QPointF at(200 + 4 * (i % 60), 200);
-      QMouseEvent move(QEvent::MouseMove, at, at, Qt::NoButton, Qt::RightButton, Qt::NoModifier);
-      QApplication::sendEvent(&cloth, &move);
-      QCoreApplication::processEvents();
-    }
-    const double turning = static_cast<double>(clock.elapsed()) * 1e-3;
-    const int frames = cloth.frames_drawn() - drawn;
-    QTest::mouseRelease(&cloth, Qt::RightButton, {}, {200, 200});
-    QVERIFY(frames > 0);
-    qInfo("turning: %.1f frames a second in %d x %d, the last took %.1f ms", frames / turning, cloth.width(),
+    const double rate = turning_rate(2000);
+    QVERIFY(rate > 0);
+    qInfo("turning: %.1f frames a second in %d x %d, the last took %.1f ms", rate, cloth.width(),
           cloth.height(), cloth.last_frame_ms());
   }
 };

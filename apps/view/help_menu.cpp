@@ -25,7 +25,8 @@ void MainWindow::build_help_menu() {
            "<b>Diagram</b>: arrows move, letters (g e v n . - t T s S d D) work the needle, Shift+arrows "
            "select, "
            "Ctrl+C, Ctrl+V, Ctrl+R repeat, Insert a course, Shift+Insert a wale.<br><br>"
-           "<b>Text</b>: Ctrl+F finds; in knitout Ctrl+. folds a pass, Ctrl+Shift+[ and ] all of them.<br><br>"
+           "<b>Text</b>: Ctrl+F finds; in knitout Ctrl+. folds a pass, Ctrl+Shift+[ and ] all of "
+           "them.<br><br>"
            "<b>Cloth menu</b>: F5 knits anew, F6 relaxes a large piece, Esc cancels."));
   });
   connect(menu->addAction(tr("&About")), &QAction::triggered, this, [this] {

@@ -88,7 +88,7 @@ JsonObject results(const Assessment& assessment, const State& state);
 bool is_whole(const Assessment& assessment, int pass_throughs);
 
 // For stiffness, which is read off second derivatives of the energy: without friction, with fine samples.
-// Contact samples lie 0.09 d apart: at the usual 0.18 d the ripple of sampled contacts makes the stiffness of
+// Contact samples lie 0.09 d apart: at 0.18 d the ripple of sampled contacts makes the stiffness of
 // plain at rest up to 70 % wrong, at 0.09 d up to 5 % (docs/homogenise.md).
 Piece elastic_piece(Piece piece);
 

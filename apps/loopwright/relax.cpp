@@ -107,7 +107,10 @@ int run(const RelaxCommand& command) {
 
   const RelaxRun run = relax_watched(*piece, command.let_go);
   const RelaxResult& relaxed = run.result;
-  write_fabric(command.out, saved_state(run));
+  State state = saved_state(run);
+  state.texts = piece->state.texts;
+  keep_notation(command.file, state);
+  write_fabric(command.out, state);
 
   const Assessment assessment = assess(relaxed.fabric);
   const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -15,6 +15,7 @@ constexpr double most_loose = 2.4;
 constexpr double enough_decrease = 1e-4;  // Armijo's constant
 constexpr int most_cuts = 40;
 constexpr double least_first_shift = 1e-5;
+constexpr int many_nodes = 8000;
 
 double largest_force(const Unknowns& g) {
   double largest = 0;
@@ -83,8 +84,9 @@ NewtonResult newton(const YarnModel& model, YarnState& state, const NewtonOption
     if (options.on_iteration && !options.on_iteration(result.iterations, result.residual))
       result.stopped = true;
     if (result.converged || result.stopped || result.iterations >= options.most_iterations) break;
-    // A start near rest needs no large shift, and would take steps to be rid of it.
-    if (result.iterations == 0) shift = std::min(shift, std::max(result.residual, least_first_shift));
+    // A large piece that starts near rest needs no large shift, and would take costly steps to be rid of it.
+    if (result.iterations == 0 && model.nodes > many_nodes)
+      shift = std::min(shift, std::max(result.residual, least_first_shift));
 
     assembly.metric(hessian);
     hessian.measure_metric = {1, 1, 1};

@@ -72,6 +72,17 @@ JsonObject json_of(const MembraneLaw& law) {
           {"shear_error", json_of(law.shear)}};
 }
 
+JsonObject json_of(const SharedLockingLaw& law) {
+  return {{"Cxx_N_m", law.Cxx},
+          {"Cyy_N_m", law.Cyy},
+          {"Cxy_N_m", law.Cxy},
+          {"beta_N_m", law.beta},
+          {"alpha", law.alpha},
+          {"r", law.r},
+          {"course_error", json_of(law.course)},
+          {"wale_error", json_of(law.wale)}};
+}
+
 JsonObject json_of(const MembraneStiffness& s) {
   JsonArray rows;
   for (const auto& row : s.C) rows.emplace_back(std::vector<double>(row.begin(), row.end()));
@@ -135,7 +146,10 @@ Homogenised homogenise(const RelaxResult& rest, const Piece& piece, const Homoge
   all.whole = all.course.whole && all.wale.whole &&
               std::all_of(all.points.begin(), all.points.end(), [](const auto& p) { return is_whole(p); });
   if (!stopped) all.curl = moment_in_newtons(rest.fabric, options);
-  if (!stopped && all.points.size() >= 8) all.law = fit_membrane(all.points);
+  if (!stopped && all.points.size() >= 8) {
+    all.law = fit_membrane(all.points);
+    all.shared_law = fit_shared_locking(all.points);
+  }
   return all;
 }
 
@@ -148,6 +162,7 @@ JsonObject results(const Homogenised& homogenised) {
   all.emplace_back("course_pull", json_of(homogenised.course));
   all.emplace_back("wale_pull", json_of(homogenised.wale));
   if (homogenised.law) all.emplace_back("law", json_of(*homogenised.law));
+  if (homogenised.shared_law) all.emplace_back("shared_law", json_of(*homogenised.shared_law));
   return all;
 }
 

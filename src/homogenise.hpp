@@ -34,9 +34,11 @@ struct Pull {
 struct Homogenised {
   MembraneStiffness stiffness;
   Pull course, wale;
-  std::vector<StretchPoint> points;    // of the grid, in its order; fewer where it was stopped
-  std::optional<CurlMoment> curl;      // N; nothing where the yarns do not close along their courses
-  std::optional<MembraneLaw> law;      // over the grid, where it has eight points
+  std::vector<StretchPoint> points;  // of the grid, in its order; fewer where it was stopped
+  std::optional<CurlMoment> curl;    // N; nothing where the yarns do not close along their courses
+  // Over the grid, where it has eight points: each direction with a locking of its own, and one for both.
+  std::optional<MembraneLaw> law;
+  std::optional<SharedLockingLaw> shared_law;
   bool stopped = false, whole = true;  // whole: no interlacing was lost under strain
 };
 

@@ -19,6 +19,11 @@ struct Piece {
   RelaxOptions options;
 };
 
+// The keys of State::texts under which a state keeps the notation that it was knitted from, and that text's
+// suffix.
+inline constexpr const char* state_notation = "notation";
+inline constexpr const char* state_notation_suffix = "notation_suffix";
+
 // What the caller states instead of the file: a sweep over loop lengths, the yarn of a knitout file that
 // names none. In the words of a fabric file's headers: {"Loop-Length", "5.9 mm"}
 // (notation/fabric_headers.hpp; Size and Edges are FabricOptions).
@@ -83,7 +88,7 @@ JsonObject results(const Assessment& assessment, const State& state);
 bool is_whole(const Assessment& assessment, int pass_throughs);
 
 // For stiffness, which is read off second derivatives of the energy: without friction, with fine samples.
-// Contact samples lie 0.09 d apart: at the usual 0.18 d the ripple of sampled contacts makes the stiffness of
+// Contact samples lie 0.09 d apart: at 0.18 d the ripple of sampled contacts makes the stiffness of
 // plain at rest up to 70 % wrong, at 0.09 d up to 5 % (docs/homogenise.md).
 Piece elastic_piece(Piece piece);
 

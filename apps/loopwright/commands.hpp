@@ -46,7 +46,7 @@ int run(const BuildCommand& command);
 // A stretch test. Strains as shares of the relaxed size, in the order in which they are gone to.
 struct StretchCommand {
   std::string file, out, csv, plot;
-  PieceRequest piece{.start_from_cell = true};
+  PieceRequest piece{.start_from_cell = true, .segments_per_loop = 24};
   std::string direction = "course";  // course, wale, both, shear
   std::vector<double> to{0.3};
   double step = 0.02;

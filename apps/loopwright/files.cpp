@@ -8,6 +8,8 @@
 #include <tuple>
 
 #include "experiments/modes.hpp"
+#include "notation/read_program.hpp"
+#include "notation/scan.hpp"
 #include "outputs/atomic_file.hpp"
 #include "outputs/exchange/curve_file.hpp"
 #include "outputs/state.hpp"
@@ -86,6 +88,16 @@ std::optional<State> read_fabric(const std::string& file, const PieceRequest& re
   std::optional<Piece> piece = read_piece(file, request);
   if (!piece) return std::nullopt;
   return std::move(piece->state);
+}
+
+void keep_notation(const std::string& file, State& state) {
+  if (names_a_state(file) || names_curves(file)) return;
+  Diagnostics unread;
+  std::optional<std::string> text = read_text(file, unread);
+  if (!text || first_byte_not_utf8(*text) != std::string_view::npos || text->find('\0') != std::string::npos)
+    return;
+  state.texts[state_notation] = std::move(*text);
+  state.texts[state_notation_suffix] = std::filesystem::path(file).extension().string();
 }
 
 void require_writable(const std::string& file) {

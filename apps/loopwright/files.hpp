@@ -19,6 +19,9 @@ std::optional<Piece> read_piece(const std::string& file, const PieceRequest& req
 // The same for who only looks at it: a saved state need not say how it is gone on with.
 std::optional<State> read_fabric(const std::string& file, const PieceRequest& request);
 
+// Puts the notation that a state was knitted from into it, where `file` is one: text in UTF-8.
+void keep_notation(const std::string& file, State& state);
+
 // Throws FileError if a file of that name could not be written, before long work is done for it. Empty and
 // "-" pass.
 void require_writable(const std::string& file);

@@ -284,6 +284,7 @@ void add_commands(CLI::App& app, Commands& commands, Action& action) {
   stretch->add_option("--friction", commands.stretch.piece.friction, "Friction coefficient of yarn on yarn")
       ->type_name("MU")
       ->check(CLI::Range(0.0, 5.0));
+  add_segments_option(*stretch, commands.stretch.piece);
   stretch->add_option("--threads", commands.stretch.threads, "Threads to use, 0 for all")
       ->check(CLI::Range(0, 4096))
       ->capture_default_str();

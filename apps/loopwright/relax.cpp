@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <iostream>
+#include <set>
 #include <sstream>
 
 #include "base/parallel.hpp"
@@ -32,6 +33,47 @@ RelaxRun relax_watched(const Piece& piece, bool let_go) {
     bar.show(share, note.str());
     return !interrupted();
   });
+}
+
+// How many of the broken interlacings are those of loops with nothing above to hold them, or nothing below:
+// open edges run, in the machine's cloth as here.
+int run_at_open_edges(const Fabric& fabric, const InterlacingCheck& check) {
+  const std::set<int> broken(check.broken.begin(), check.broken.end());
+  std::set<LoopId> held_above, held_below;
+  for (std::size_t k = 0; k < fabric.interlacings.size(); ++k)
+    if (!broken.contains(static_cast<int>(k))) {
+      held_above.insert(fabric.interlacings[k].parent);
+      held_below.insert(fabric.interlacings[k].child);
+    }
+  int run = 0;
+  for (const int k : broken) {
+    const PlacedInterlacing& lost = fabric.interlacings[static_cast<std::size_t>(k)];
+    run += !held_above.contains(lost.child) || !held_below.contains(lost.parent);
+  }
+  return run;
+}
+
+void tell_open_edges(const std::string& file, const Fabric& fabric, const InterlacingCheck& check) {
+  const int run = fabric.periodic ? 0 : run_at_open_edges(fabric, check);
+  if (run > 0)
+    std::cerr << file << ": note: " << run << " of the " << check.expected - check.intact
+              << " lost ones are at open edges, where nothing holds the loops: they run, as knitted cloth "
+                 "does that is not cast on and bound off\n";
+}
+
+// Loops too short to close round the yarn stretch it even where nothing pulls at the cloth.
+void tell_if_jammed(const std::string& file, const Fabric& fabric) {
+  constexpr double most_strain = 0.003;
+  double strain = 0;
+  for (const FabricYarn& yarn : fabric.yarns)
+    strain = std::max(strain, arc_length(fabric, yarn) / (yarn.segments() * yarn.segment_rest_length) - 1);
+  if (fabric.loops.empty() || strain < most_strain) return;
+  std::ostringstream line;
+  line.precision(2);
+  line << file << ": warning: jammed: at rest the yarn is stretched by " << 100 * strain
+       << " %, its loops are too short for its thickness; sizes and forces are those of squeezed yarn. Take "
+          "longer loops or thinner yarn\n";
+  std::cerr << line.str();
 }
 
 // Curvatures of cloth that was let go, for people and in 1/mm; a piece too small for them says nothing.
@@ -65,7 +107,10 @@ int run(const RelaxCommand& command) {
 
   const RelaxRun run = relax_watched(*piece, command.let_go);
   const RelaxResult& relaxed = run.result;
-  write_fabric(command.out, saved_state(run));
+  State state = saved_state(run);
+  state.texts = piece->state.texts;
+  keep_notation(command.file, state);
+  write_fabric(command.out, state);
 
   const Assessment assessment = assess(relaxed.fabric);
   const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -86,6 +131,8 @@ int run(const RelaxCommand& command) {
   if (!command.json.empty()) write_json(command.json, all);
 
   bool broken = say_if_broken(command.file, assessment, relaxed.pass_throughs);
+  tell_open_edges(command.file, relaxed.fabric, assessment.interlacings);
+  if (!relaxed.stopped) tell_if_jammed(command.file, relaxed.fabric);
   if (assessment.linked != run.linked_before) {
     std::cerr << command.file << ": error: broken: rings are linked otherwise than before\n";
     broken = true;

@@ -1,25 +1,18 @@
 #include "cloth_job.hpp"
 
-#include <chrono>
 #include <exception>
 #include <stdexcept>
 #include <utility>
 
+#include "base/stop.hpp"
+#include "cloth_file_job.hpp"
 #include "machine/run_machine.hpp"
+#include "moment_teller.hpp"
 #include "notation/read_program.hpp"
 #include "topology/build_yarn_graph.hpp"
 
 namespace loopwright {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-// Counting interlacings costs about as much as a step of a small cell; on the way larger pieces go without.
-constexpr std::size_t most_loops_counted_live = 200;
 
 bool wants_repeat(const ClothRequest& request, const Program& program) {
   if (request.window || request.piece == PieceChoice::whole || !program.notation) return false;
@@ -31,39 +24,29 @@ bool wants_repeat(const ClothRequest& request, const Program& program) {
 class ClothJob {
  public:
   ClothJob(const ClothRequest& request, const std::atomic<bool>& cancelled, const ShowMoment& show)
-      : request_(request), cancelled_(cancelled), show_(show) {}
+      : request_(request), cancelled_(cancelled), moments_(show) {}
 
   void run() {
-    if (!knit()) return;
-    if (cancelled_) return;
-    Fabric first = geometry();
-    moment_.stage = ClothStage::as_knitted;
-    count(first);
-    publish(first);
+    Fabric first;
+    try {
+      const StopScope scope(cancelled_);
+      if (!knit()) return;
+      first = geometry();
+      moment().stage = ClothStage::as_knitted;
+      moments_.count(first);
+    } catch (const Stopped&) {
+      moments_.stop(moment().knitting ? "stopped before there was cloth" : "stopped while reading");
+      return;
+    }
+    moments_.publish(first);
     if (cancelled_ || request_.most_loops == 0 || first.loops.size() > request_.most_loops) return;
     relax_from(std::move(first));
   }
 
-  void fail(const std::string& why) {
-    moment_.stage = ClothStage::unusable;
-    moment_.message = why;
-    moment_.fabric = nullptr;
-    show(moment_);
-  }
+  void fail(const std::string& why) { moments_.fail(why); }
 
  private:
-  void show(ClothMoment moment) {
-    moment.seconds = seconds_since(start_);
-    last_shown_ = Clock::now();
-    show_(std::move(moment));
-  }
-
-  void publish(const Fabric& fabric) {
-    moment_.fabric = std::make_shared<const Fabric>(fabric);
-    show(moment_);
-  }
-
-  void count(const Fabric& fabric) { moment_.interlacings = check_interlacings(fabric); }
+  ClothMoment& moment() { return moments_.moment(); }
 
   // notation -> machine -> topology; false after saying that there is nothing to build.
   bool knit() {
@@ -81,8 +64,7 @@ class ClothJob {
         diagnostics = std::move(of_cell);
       }
     }
-    moment_.interlacings.expected = -1;
-    moment_.diagnostics = std::make_shared<const Diagnostics>(diagnostics);
+    moment().diagnostics = std::make_shared<const Diagnostics>(diagnostics);
     if (!diagnostics.ok() || knitting.graph.loops.empty()) {
       fail(diagnostics.ok() ? "nothing is knitted yet: write a course, such as the letter g"
                             : "the notation has errors");
@@ -91,14 +73,16 @@ class ClothJob {
     piece_.periodic = knitting.program.settings.edges == Edges::periodic;
     piece_.window = request_.window;
     piece_.start_from_cell = true;
-    moment_.knitting = std::make_shared<const Knitting>(std::move(knitting));
-    show(moment_);
+    moment().knitting = std::make_shared<const Knitting>(std::move(knitting));
+    if (!moment().knitting->program.notation)
+      moment().passes = std::make_shared<const KnitoutPasses>(moment().knitting);
+    moments_.show();
     return true;
   }
 
   Fabric geometry() {
     try {
-      return first_geometry(*moment_.knitting, piece_);
+      return first_geometry(*moment().knitting, piece_);
     } catch (const std::invalid_argument&) {
       if (!piece_.periodic || request_.piece == PieceChoice::repeat) throw;
     }
@@ -106,64 +90,50 @@ class ClothJob {
     Diagnostics diagnostics(request_.name);
     FabricOptions options;
     options.edges = Edges::held;
-    moment_.knitting = std::make_shared<const Knitting>(knit_text(request_, options, diagnostics));
+    moment().knitting = std::make_shared<const Knitting>(knit_text(request_, options, diagnostics));
     piece_.periodic = false;
-    return first_geometry(*moment_.knitting, piece_);
+    return first_geometry(*moment().knitting, piece_);
   }
 
   void relax_from(Fabric first) {
-    RelaxOptions options = relax_options(first, moment_.knitting->program, piece_);
-    moment_.options = std::make_shared<const RelaxOptions>(options);
+    const RelaxOptions fresh = relax_options(first, moment().knitting->program, piece_);
+    if (request_.at_hand && go_on_from_hand(first, fresh)) return;
+    RelaxOptions options = fresh;
+    moment().options = std::make_shared<const RelaxOptions>(options);
     options.on_progress = [this](const RelaxProgress& progress) {
-      note(progress);
+      moments_.note(progress);
       return !cancelled_;
     };
-    if (std::optional<Fabric> started = start_from_relaxed_cell(*moment_.knitting, piece_, first, options)) {
+    if (std::optional<Fabric> started = start_from_relaxed_cell(*moment().knitting, piece_, first, options)) {
       first = std::move(*started);
-      moment_.fabric = std::make_shared<const Fabric>(first);
+      moment().fabric = std::make_shared<const Fabric>(first);
     }
-    // pictures on the way, a few a second
-    options.on_progress = [this, &first](const RelaxProgress& progress) {
-      note(progress);
-      if (progress.state && seconds_since(last_shown_) > seconds_between_moments) {
-        const Fabric now = with_state(first, *progress.state);
-        if (first.loops.size() <= most_loops_counted_live)
-          count(now);
-        else
-          moment_.interlacings.expected = -1;
-        publish(now);
-      }
-      return !cancelled_;
-    };
-    finish(relax_piece(first, options));
+    options.on_progress = moments_.watch(first, cancelled_);
+    moments_.finish(relax_piece(first, options));
   }
 
-  void note(const RelaxProgress& progress) {
-    moment_.stage = progress.radius < 1 ? ClothStage::growing : ClothStage::relaxing;
-    moment_.iterations = progress.newton_iterations;
-    moment_.residual = progress.residual;
-    moment_.radius = progress.radius;
-  }
-
-  void finish(RelaxResult result) {
-    result.fabric.name = moment_.fabric->name;
-    moment_.stage = result.stopped     ? ClothStage::stopped
-                    : result.converged ? ClothStage::at_rest
-                                       : ClothStage::not_at_rest;
-    moment_.residual = result.residual;
-    moment_.iterations = result.newton_iterations;
-    moment_.message = result.message;
-    count(result.fabric);
-    moment_.relaxed = std::make_shared<const RelaxResult>(std::move(result));
-    publish(moment_.relaxed->fabric);
+  // False where the cloth at hand is of no use, or did not come to rest.
+  bool go_on_from_hand(const Fabric& first, RelaxOptions options) {
+    const std::optional<Fabric> started =
+        start_from_cloth_at_hand(*request_.at_hand, *moment().knitting, first, options);
+    if (!started) return false;
+    moment().options = std::make_shared<const RelaxOptions>(options);
+    moment().went_on = true;
+    moments_.publish(*started);
+    options.on_progress = moments_.watch(*started, cancelled_);
+    RelaxResult result = relax_piece(*started, options);
+    const bool good = result.stopped || (result.converged && result.pass_throughs == 0);
+    if (good)
+      moments_.finish(std::move(result));
+    else
+      moment().went_on = false;
+    return good;
   }
 
   const ClothRequest& request_;
   const std::atomic<bool>& cancelled_;
-  const ShowMoment& show_;
   PieceRequest piece_;
-  ClothMoment moment_;
-  Clock::time_point start_ = Clock::now(), last_shown_ = start_;
+  MomentTeller moments_;
 };
 
 }  // namespace
@@ -177,6 +147,10 @@ Knitting knit_text(const ClothRequest& request, const FabricOptions& options, Di
 }
 
 void make_cloth(const ClothRequest& request, const std::atomic<bool>& cancelled, const ShowMoment& show) {
+  if (!request.cloth_file.empty()) {
+    show_cloth_file(request, cancelled, show);
+    return;
+  }
   ClothJob job(request, cancelled, show);
   try {
     job.run();

@@ -34,7 +34,7 @@ void ClothView::choose_at(const QPointF& at) {
     return;
   }
   if (!drawn_) return;
-  const auto picked = yarn_at(*drawn_, repeats_, sight_at(at));
+  const auto picked = yarn_at(*drawn_, repeats_, sight_at(at), fed_);
   if (!picked || picked->loop < 0) {
     session_.select(Selection{});
     return;
@@ -45,7 +45,7 @@ void ClothView::choose_at(const QPointF& at) {
 // Takes hold of a binding point (loop model) or of an edge of the cloth (yarn model).
 void ClothView::begin_yarn_pull(const QPointF& at) {
   if (!drawn_ || !session_.moment().relaxed) return;
-  const auto picked = yarn_at(*drawn_, repeats_, sight_at(at));
+  const auto picked = yarn_at(*drawn_, repeats_, sight_at(at), fed_);
   if (!picked) return;
   session_.take_hold(picked->yarn, picked->t);
   drag_.held = picked->place;
@@ -100,6 +100,16 @@ void ClothView::pull(const QPointF& at) {
     const double scale = camera_.height / height();
     const QPointF way = at - drag_.start;
     const bool course = drag_.edge == StretchDirection::course;
+    // an upper or lower edge that first goes sideways shears
+    if (!drag_.edge_chosen && !course && std::abs(way.x()) > 1.5 * std::abs(way.y()) &&
+        session_.moment().relaxed->fabric.periodic)
+      drag_.edge = StretchDirection::shear;
+    drag_.edge_chosen = true;
+    if (drag_.edge == StretchDirection::shear) {
+      const double height = session_.moment().relaxed->fabric.height * repeats_[1];
+      emit edge_pulled(drag_.edge, std::clamp(drag_.edge_side * 2 * way.x() * scale / height, -0.5, 0.5));
+      return;
+    }
     const double moved = drag_.edge_side * (course ? way.x() : -way.y()) * scale;
     const Fabric& rest = session_.moment().relaxed->fabric;
     const double size = (course ? rest.width * repeats_[0] : rest.height * repeats_[1]);

@@ -49,23 +49,36 @@ void ClothView::paint_notes(QPainter& painter, QSize size) {
   } else {
     painter.setPen(ink);
     painter.drawText(rect(), Qt::AlignCenter | Qt::TextWordWrap,
-                     session_.working() ? tr("Knitting \u2026") : tr("No cloth yet"));
+                     session_.working() ? tr("Knitting \u2026")
+                     : style_ != ClothStyle::yarn && session_.document().kind() == DocumentKind::cloth
+                         ? tr("Masses and springs are made from a notation; this file holds cloth (F2 shows "
+                              "its yarn)")
+                         : tr("No cloth yet"));
   }
   // a broken cloth is never shown as good
   const ClothMoment& moment = session_.moment();
   if (style_ == ClothStyle::yarn && session_.broken())
-    banner(painter, size,
-           tr("BROKEN: %1 of %2 interlacings. This is not what the notation knits.")
-               .arg(moment.interlacings.intact)
-               .arg(moment.interlacings.expected),
-           QColor(190, 30, 30));
+    banner(painter, size, broken_text(), QColor(190, 30, 30));
   else if (moment.stage == ClothStage::unusable && scene_)
     banner(painter, size, tr("The last good cloth; the text has errors"), QColor(150, 100, 20));
+  else if (!session_.fabric_is_current() && scene_ && moment.stage == ClothStage::stopped)
+    banner(painter, size, tr("The last cloth; the new one was stopped (F5 knits it)"), QColor(80, 100, 130));
   else if (!session_.fabric_is_current() && scene_)
     banner(painter, size, tr("The last cloth; the new one is being knitted"), QColor(80, 100, 130));
   else if (moment.stage == ClothStage::not_at_rest && style_ == ClothStyle::yarn)
     banner(painter, size, tr("Not at rest: %1").arg(QString::fromStdString(moment.message)),
            QColor(150, 100, 20));
+}
+
+QString ClothView::broken_text() const {
+  const ClothMoment& moment = session_.moment();
+  const InterlacingCheck& check = moment.interlacings;
+  if (moment.linked_anew) return tr("BROKEN: rings hang in each other otherwise than in the file.");
+  if (check.intact < check.expected)
+    return tr("BROKEN: %1 of %2 interlacings. This is not what the notation knits.")
+        .arg(check.intact)
+        .arg(check.expected);
+  return tr("BROKEN: yarn went through yarn on the way here. This is not what the notation knits.");
 }
 
 void ClothView::paint_legend(QPainter& painter, QSize) {

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/stop.hpp"
 #include "cloth_view.hpp"
+#include "knitted_so_far.hpp"
+#include "scene_budget.hpp"
 
 namespace loopwright {
 namespace {
@@ -23,10 +26,22 @@ std::array<int, 2> repeats_for(const Fabric& fabric, const Knitting* knitting) {
   return {enough(wales, fabric.wales), enough(courses, fabric.courses)};
 }
 
+// The colours of the segments that are left of a sparse yarn.
+template <class Colours>
+void keep_every(Colours& colours, int every) {
+  Colours kept;
+  for (std::size_t k = 0; k < colours.size(); k += static_cast<std::size_t>(every))
+    kept.push_back(colours[k]);
+  colours = std::move(kept);
+}
+
 }  // namespace
 
 void ClothView::take_fabric() {
   if (!session_.fabric()) {
+    // scenes of the other document may still come, and are wanted by nobody
+    *other_document_ = true;
+    other_document_ = std::make_shared<std::atomic<bool>>(false);
     drawn_ = nullptr;
     scene_ = moving_scene_ = nullptr;
     motion_ = nullptr;
@@ -50,13 +65,18 @@ void ClothView::ask_for_scene() {
     redraw();
     return;
   }
-  const bool at_work = session_.working();
+  // of a large piece something is drawn at once
+  constexpr std::size_t large = 30'000;
+  const bool quick = session_.working() || (segments_of(*fabric) > large && drawn_ != fabric);
   SceneOptions options;
   const Knitting* knitting = session_.moment().knitting.get();
   repeats_ = options.repeats = repeats_for(*fabric, knitting);
   detail_ = wanted_detail();
-  options.pixels_per_diameter = at_work ? std::min(detail_, 8.0) : detail_;
-  options.look.occlusion = !at_work;
+  const double fine = affordable_detail(*fabric, detail_, without_gpu_), coarse = std::min(fine, 8.0);
+  const bool occlusion = affords_occlusion(*fabric, fine);
+  const bool at_work = quick && (coarse < fine || occlusion || session_.working());
+  options.pixels_per_diameter = at_work ? coarse : fine;
+  options.look.occlusion = !at_work && occlusion;
   options.look.fuzz = 0;
   const Selection& chosen = session_.selection();
   const std::vector<int> kin = session_.spans_at(chosen.at);
@@ -69,36 +89,54 @@ void ClothView::ask_for_scene() {
                           ? ColourBy::yarn
                           : colour_by_;
   const int serial = ++scenes_asked_;
-  scene_builder_.start([this, serial, fabric, options, spans, kin, model, by, at_work,
-                        repeats = repeats_](const std::atomic<bool>& cancelled) mutable {
+  scene_builder_.start([this, serial, other = other_document_, fabric, options, spans, kin, model, by,
+                        at_work, repeats = repeats_](const std::atomic<bool>& cancelled) mutable {
     BuiltScene built;
     built.repeats = repeats;
     built.coarse = at_work;
+    // a newer picture of the same cloth does not stop this one: while yarn moves none would be finished
+    const StopScope scope(*other);
     try {
       built.colours = cloth_colours(*fabric, model, by, spans, kin);
       options.colours = built.colours.segments;
       if (!cancelled) built.scene = std::make_shared<const YarnScene>(yarn_scene(*fabric, options));
+      if (at_work || cancelled) throw Stopped();
       options.pixels_per_diameter = std::min(options.pixels_per_diameter, 6.0);
-      if (!cancelled && !at_work)
-        built.moving = std::make_shared<const YarnScene>(yarn_scene(*fabric, options));
+      const SparseFabric sparse = sparse_fabric(*fabric);
+      built.every = sparse.every;
+      for (auto& yarn : options.colours) keep_every(yarn, sparse.every);
+      options.look.occlusion = options.look.occlusion && sparse.every == 1;
+      built.moving = std::make_shared<const YarnScene>(yarn_scene(sparse.fabric, options));
+    } catch (const Stopped&) {
+      // what there is
     } catch (const std::exception&) {
       built.scene = nullptr;  // the message of the moment says what is wrong with the fabric
     }
     QMetaObject::invokeMethod(
         this,
-        [this, serial, fabric, built = std::move(built)]() mutable {
+        [this, serial, other, fabric, built = std::move(built)]() mutable {
           scenes_taken_ = serial;
+          if (*other) return;
           drawn_ = fabric;
+          show_knitted();
           take_scene(std::move(built));
         },
         Qt::QueuedConnection);
   });
 }
 
+void ClothView::show_knitted() {
+  const int until = session_.knitted_until();
+  const bool all = until < 0 || !drawn_ || !session_.moment().knitting;
+  fed_ = all ? std::vector<double>() : fed_until(*drawn_, session_.moment().knitting->graph, until);
+  redraw();
+}
+
 void ClothView::take_scene(BuiltScene built) {
   if (!built.scene) return;
   scene_ = std::move(built.scene);
   moving_scene_ = std::move(built.moving);
+  moving_every_ = built.every;
   colours_ = std::move(built.colours);
   repeats_ = built.repeats;
   coarse_ = built.coarse;

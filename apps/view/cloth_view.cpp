@@ -9,7 +9,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "knitted_so_far.hpp"
 #include "picking.hpp"
+#include "scene_budget.hpp"
 
 namespace loopwright {
 namespace {
@@ -27,6 +29,7 @@ ClothView::ClothView(Session& session, QWidget* parent) : QOpenGLWidget(parent),
   connect(&session_, &Session::moment_changed, this, qOverload<>(&QWidget::update));
   connect(&session_, &Session::moment_changed, this, &ClothView::ask_for_motion);
   connect(&session_, &Session::selection_changed, this, &ClothView::ask_for_scene);
+  connect(&session_, &Session::knitted_changed, this, &ClothView::show_knitted);
   // after the last movement the picture gets its shadows back
   still_timer_.setSingleShot(true);
   still_timer_.setInterval(180);
@@ -40,6 +43,7 @@ ClothView::ClothView(Session& session, QWidget* parent) : QOpenGLWidget(parent),
 }
 
 ClothView::~ClothView() {
+  *other_document_ = true;
   scene_builder_.cancel();
   motion_builder_.cancel();
   makeCurrent();
@@ -179,6 +183,10 @@ void ClothView::initializeGL() {
     yarns_ = std::make_unique<YarnRenderer>();
     moving_yarns_ = std::make_unique<YarnRenderer>();
     lines_ = std::make_unique<StructurePainter>();
+    // Mesa's names for a processor that draws
+    const QByteArray drawn_by(
+        reinterpret_cast<const char*>(context()->functions()->glGetString(GL_RENDERER)));
+    without_gpu_ = drawn_by.contains("llvmpipe") || drawn_by.contains("softpipe");
     uploaded_ = false;
     buffer_.reset();
   } catch (const std::runtime_error& fault) {
@@ -203,9 +211,13 @@ void ClothView::draw_scene(int width, int height, double line_pixels) {
       if (moving_scene_) moving_yarns_->upload(*moving_scene_);
       uploaded_ = true;
     }
+    if (scene_ && drawn_) {
+      yarns_->show_only(runs_until(*scene_, *drawn_, fed_));
+      if (moving_scene_) moving_yarns_->show_only(runs_until(*moving_scene_, *drawn_, fed_, moving_every_));
+    }
     DrawStyle style;
     style.background = background();
-    style.shadows = !moving_ && !coarse_;
+    style.shadows = !moving_ && !coarse_ && scene_ && affords_shadows(*scene_, without_gpu_);
     style.table = false;
     if (scene_)
       (moving_ && moving_scene_ ? moving_yarns_ : yarns_)->draw(camera_, style, width, height);

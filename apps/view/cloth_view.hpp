@@ -71,8 +71,9 @@ class ClothView : public QOpenGLWidget {
     QPointF start, last;
     bool moved = false, pulls = false, pulls_edge = false, pulls_yarn = false;
     StretchDirection edge = StretchDirection::course;
-    double edge_side = 1;  // +1: right or top edge
-    Vec3 held;             // place that is pulled
+    double edge_side = 1;      // +1: right or top edge
+    bool edge_chosen = false;  // whether its first way said what it is
+    Vec3 held;                 // place that is pulled
   };
   void follow();
   void moved_by_hand();
@@ -83,14 +84,18 @@ class ClothView : public QOpenGLWidget {
     ClothColours colours;
     std::array<int, 2> repeats{1, 1};
     bool coarse = false;
+    int every = 1;  // control point in the moving scene
   };
   void take_scene(BuiltScene built);
   void ask_for_motion();
   void tick();
+  // Knitting needle by needle: how far each yarn has been fed, in its parameter; empty: all of it.
+  void show_knitted();
   void draw_scene(int width, int height, double line_pixels);
   void draw_into_buffer(QSize pixels);
   void redraw();  // the picture is out of date, not only what is written over it
   void paint_notes(QPainter& painter, QSize size);
+  QString broken_text() const;
   void paint_legend(QPainter& painter, QSize size);
   void choose_at(const QPointF& at);
   void begin_pull(const QPointF& at, bool at_yarn);
@@ -123,7 +128,11 @@ class ClothView : public QOpenGLWidget {
   std::shared_ptr<const YarnScene> scene_,
       moving_scene_;  // of a coarser mesh, for while it moves; may be none
   bool uploaded_ = false, coarse_ = false;
+  bool without_gpu_ = false;
+  int moving_every_ = 1;
+  std::vector<double> fed_;
   int scenes_asked_ = 0, scenes_taken_ = 0;
+  std::shared_ptr<std::atomic<bool>> other_document_ = std::make_shared<std::atomic<bool>>(false);
   ClothColours colours_;
   std::array<int, 2> repeats_{1, 1};
   double detail_ = 0;

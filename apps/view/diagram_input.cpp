@@ -38,7 +38,7 @@ void DiagramView::mouseReleaseEvent(QMouseEvent*) {
 std::optional<DiagramArea> DiagramView::area() const {
   if (!anchor_ || !cursor_) return std::nullopt;
   const NeedleDiagram& diagram = session_.diagram();
-  const auto line_of = [&](const Place& place) { return diagram.passes[place.pass].line; };
+  const auto line_of = [&](const Place& place) { return session_.pass(place.pass).line; };
   if (!line_of(*anchor_) || !line_of(*cursor_)) return std::nullopt;
   const int repeat = std::max(diagram.repeat_wales, 1);
   const auto [l0, l1] = std::minmax({*line_of(*anchor_), *line_of(*cursor_)});
@@ -55,10 +55,9 @@ void DiagramView::copy() {
 
 void DiagramView::paste_copied() {
   if (!cursor_ || copied_.lines.empty()) return;
-  const auto& passes = session_.diagram().passes;
   // at the lower left corner of what is selected
   const auto where = area();
-  const auto line = where ? std::optional(where->first_line) : passes[cursor_->pass].line;
+  const auto line = where ? std::optional(where->first_line) : session_.pass(cursor_->pass).line;
   const int repeat = std::max(session_.diagram().repeat_wales, 1);
   const int wale = where ? where->first_wale : cursor_->wale % repeat;
   if (!line) return;
@@ -119,7 +118,7 @@ void DiagramView::keyPressEvent(QKeyEvent* event) {
     } else {
       anchor_.reset();
     }
-    const auto most = static_cast<int>(session_.diagram().passes.size()) - 1;
+    const auto most = static_cast<int>(session_.passes()) - 1;
     cursor_->pass = static_cast<std::size_t>(std::clamp(static_cast<int>(cursor_->pass) + passes, 0, most));
     cursor_->wale = std::clamp(cursor_->wale + wales, 0, session_.diagram().wales - 1);
     choose(*cursor_);

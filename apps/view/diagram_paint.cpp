@@ -72,10 +72,12 @@ void DiagramView::paintEvent(QPaintEvent* event) {
   painter.setRenderHint(QPainter::Antialiasing);
   painter.fillRect(event->rect(), QColor(255, 255, 255));
   const NeedleDiagram& diagram = session_.diagram();
-  if (diagram.passes.empty()) {
+  if (rows_.empty()) {
     painter.setPen(QColor(120, 120, 120));
     painter.drawText(viewport()->rect(), Qt::AlignCenter | Qt::TextWordWrap,
-                     tr("The diagram is drawn as soon as the text can be read."));
+                     session_.document().kind() == DocumentKind::cloth
+                         ? tr("This file holds cloth: it has no needle diagram.")
+                         : tr("The diagram is drawn as soon as the text can be read."));
     return;
   }
   if (!session_.diagram_is_current()) painter.setOpacity(0.4);
@@ -83,16 +85,13 @@ void DiagramView::paintEvent(QPaintEvent* event) {
   const int repeat = diagram.repeat_wales > 0 ? diagram.repeat_wales : diagram.wales;
   const QPointF corner = dot(diagram.first_needle - 0.5, 0);
   painter.fillRect(QRectF(corner.x(), 0, repeat * pitch_, viewport()->height()), QColor(247, 245, 238));
-  for (std::size_t p = 0; p < diagram.passes.size(); ++p) {
-    const double top = dot(0, rows_[p].rear - 0.5).y(), bottom = dot(0, rows_[p].front + 0.5).y();
-    if (bottom < event->rect().top() || top > event->rect().bottom()) continue;
-    paint_pass(painter, p);
-  }
+  const auto [first, last] = passes_between(event->rect().top(), event->rect().bottom());
+  for (std::size_t p = first; p < last; ++p) paint_pass(painter, p);
 }
 
 void DiagramView::paint_pass(QPainter& painter, std::size_t p) {
   const NeedleDiagram& diagram = session_.diagram();
-  DiagramPass pass = diagram.passes[p];
+  DiagramPass pass = session_.pass(p);
   // what the carriage has not come to yet
   for (auto* row : {&pass.front, &pass.rear})
     for (DiagramNeedle& needle : *row)
@@ -208,17 +207,21 @@ void DiagramView::paint_yarn(QPainter& painter, const DiagramPass& pass, const R
 
 void DiagramView::paint_labels(QPainter& painter, std::size_t p) {
   const NeedleDiagram& diagram = session_.diagram();
-  const DiagramPass& pass = diagram.passes[p];
+  const DiagramPass& pass = session_.pass(p);
   const double middle = dot(0, (rows_[p].front + rows_[p].rear) / 2).y();
   QFont font = painter.font();
   font.setPixelSize(std::max(9, static_cast<int>(0.42 * pitch_)));
   painter.setFont(font);
   painter.setPen(QColor(60, 60, 60));
-  const bool first = p == 0 || diagram.passes[p - 1].course != pass.course;
+  const bool first = p == 0 || session_.pass(p - 1).course != pass.course;
   const double left = dot(least_slot_, 0).x();
-  if (first)
-    painter.drawText(QRectF(left - 3.0 * pitch_, middle - pitch_ / 2, 1.2 * pitch_, pitch_),
+  // the course stands apart from the yarn, whose name may be a number as well
+  if (first) {
+    painter.setPen(QColor(150, 146, 134));
+    painter.drawText(QRectF(left - 3.3 * pitch_, middle - pitch_ / 2, 1.2 * pitch_, pitch_),
                      Qt::AlignRight | Qt::AlignVCenter, QString::number(pass.course));
+    painter.setPen(QColor(60, 60, 60));
+  }
   QString who;
   for (const int yarn : pass.yarns)
     who += (who.isEmpty() ? QString() : QStringLiteral("+")) +

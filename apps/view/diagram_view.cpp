@@ -72,9 +72,15 @@ DiagramView::DiagramView(Session& session, QWidget* parent) : QAbstractScrollAre
 
 void DiagramView::lay_out() {
   const NeedleDiagram& diagram = session_.diagram();
-  const std::vector<Row> before = std::exchange(rows_, std::vector<Row>(diagram.passes.size()));
+  const std::vector<Row> before = std::exchange(rows_, std::vector<Row>(session_.passes()));
   least_slot_ = diagram.first_needle;
   double most_slot = diagram.first_needle + diagram.wales;
+  const auto widen = [&](double racking) {
+    least_slot_ = std::min(least_slot_, diagram.first_needle + racking);
+    most_slot = std::max(most_slot, diagram.first_needle + diagram.wales + racking);
+  };
+  if (session_.knitout())
+    for (const ProgramPass& run : session_.knitout()->diagram().runs()) widen(run.racking);
   for (const DiagramPass& pass : diagram.passes)
     for (const DiagramNeedle& needle : pass.rear) {
       least_slot_ = std::min(least_slot_, needle.slot);
@@ -87,6 +93,7 @@ void DiagramView::lay_out() {
   for (std::size_t p = 0; p < rows_.size(); ++p) {
     rows_[p].front = height_ - 0.8 - line_height * static_cast<double>(p);
     rows_[p].rear = rows_[p].front - bed_distance;
+    if (session_.knitout()) continue;
     const DiagramPass& pass = diagram.passes[p];
     if (pass.line && !pass.implied) rows_[p].line = static_cast<int>(*pass.line), rows_[p].pass = pass.pass;
   }
@@ -141,19 +148,31 @@ QPointF DiagramView::dot(double slot, double height) const {
 }
 
 QPointF DiagramView::needle_place(std::size_t pass, bool rear, int wale) const {
-  const DiagramPass& of = session_.diagram().passes[pass];
+  const DiagramPass& of = session_.pass(pass);
   const auto& row = rear ? of.rear : of.front;
   const auto w = static_cast<std::size_t>(wale);
   const double slot = w < row.size() ? row[w].slot : session_.diagram().first_needle + wale;
   return dot(slot, rear ? rows_[pass].rear : rows_[pass].front);
 }
 
+// Passes whose line lies between two heights of the viewport, the first and the one after the last.
+std::pair<std::size_t, std::size_t> DiagramView::passes_between(double top, double bottom) const {
+  const double count = static_cast<double>(rows_.size());
+  const auto pass_at = [&](double y) {
+    const double height = (y - dot(0, 0).y()) / pitch_;
+    return (height_ - 0.8 - bed_distance / 2 - height) / line_height;
+  };
+  const double first = std::clamp(std::floor(pass_at(bottom)) - 1, 0.0, count),
+               last = std::clamp(std::ceil(pass_at(top)) + 2, 0.0, count);
+  return {static_cast<std::size_t>(first), static_cast<std::size_t>(last)};
+}
+
 std::optional<DiagramView::Place> DiagramView::place_at(const QPointF& at) const {
   const NeedleDiagram& diagram = session_.diagram();
   std::optional<Place> best;
   double nearest = 0.55 * pitch_;
-  for (std::size_t p = 0; p < diagram.passes.size(); ++p) {
-    if (std::abs(dot(0, rows_[p].front - bed_distance / 2).y() - at.y()) > line_height * pitch_) continue;
+  const auto [first, last] = passes_between(at.y() - line_height * pitch_, at.y() + line_height * pitch_);
+  for (std::size_t p = first; p < last; ++p) {
     for (const bool rear : {false, true})
       for (int w = 0; w < diagram.wales; ++w) {
         const QPointF there = needle_place(p, rear, w) - at;
@@ -167,7 +186,7 @@ std::optional<DiagramView::Place> DiagramView::place_at(const QPointF& at) const
 }
 
 const DiagramNeedle& DiagramView::needle(const Place& place) const {
-  const DiagramPass& pass = session_.diagram().passes[place.pass];
+  const DiagramPass& pass = session_.pass(place.pass);
   const auto& row = place.rear ? pass.rear : pass.front;
   static const DiagramNeedle none;
   const auto w = static_cast<std::size_t>(place.wale);
@@ -182,6 +201,8 @@ void DiagramView::set_tool(DiagramTool tool) {
 // Needles in the order in which the carriage meets them.
 void DiagramView::list_acts() {
   acts_.clear();
+  shown_acts_ = -1;
+  if (session_.knitout()) return;  // it knows its own
   const NeedleDiagram& diagram = session_.diagram();
   for (std::size_t p = 0; p < diagram.passes.size(); ++p) {
     const DiagramPass& pass = diagram.passes[p];
@@ -194,24 +215,47 @@ void DiagramView::list_acts() {
     std::stable_sort(acts_.begin() + first, acts_.end(),
                      [way](const Act& a, const Act& b) { return way * a.slot < way * b.slot; });
   }
-  shown_acts_ = -1;
+}
+
+int DiagramView::acts() const {
+  return session_.knitout() ? session_.knitout()->acts() : static_cast<int>(acts_.size());
+}
+
+SourceLocation DiagramView::act_place(int k) const { return act(k).at; }
+
+DiagramView::Act DiagramView::act(int k) const {
+  if (const auto& knitout = session_.knitout())
+    return {knitout->pass_of(k), knitout->slot(k), knitout->place(k)};
+  return acts_[static_cast<std::size_t>(k)];
 }
 
 void DiagramView::show_acts(int count) {
   shown_acts_ = count >= acts() ? -1 : count;
+  // the cloth as far as it is knitted: a knitout programme is knitted once, from its first line to its last
+  if (const auto& knitout = session_.knitout())
+    session_.knit_until(shown_acts_ < 0 ? -1 : shown_acts_ == 0 ? 0 : knitout->instruction(shown_acts_ - 1));
+  if (count > 0 && count <= acts()) show_pass(act(count - 1).pass);
   viewport()->update();
+}
+
+void DiagramView::show_pass(std::size_t p) {
+  const double top = dot(0, rows_[p].rear - 0.6).y(), bottom = dot(0, rows_[p].front + 0.6).y();
+  QScrollBar* bar = verticalScrollBar();
+  if (top < 0) bar->setValue(bar->value() + static_cast<int>(std::floor(top)));
+  if (bottom > viewport()->height())
+    bar->setValue(bar->value() + static_cast<int>(std::ceil(bottom - viewport()->height())));
 }
 
 bool DiagramView::begun(std::size_t pass) const {
   if (shown_acts_ < 0) return true;
-  return shown_acts_ > 0 && pass <= acts_[static_cast<std::size_t>(shown_acts_ - 1)].pass;
+  return shown_acts_ > 0 && pass <= act(shown_acts_ - 1).pass;
 }
 
 bool DiagramView::done(std::size_t pass, double slot) const {
   if (shown_acts_ < 0) return true;
   if (!begun(pass)) return false;
-  const Act& last = acts_[static_cast<std::size_t>(shown_acts_ - 1)];
-  const double way = session_.diagram().passes[pass].direction == Direction::left ? -1 : 1;
+  const Act last = act(shown_acts_ - 1);
+  const double way = session_.pass(pass).direction == Direction::left ? -1 : 1;
   return pass < last.pass || way * slot <= way * last.slot;
 }
 
@@ -224,7 +268,11 @@ void DiagramView::choose(const Place& place) {
 
 void DiagramView::operate(const Place& place, NeedleOperation operation) {
   const NeedleDiagram& diagram = session_.diagram();
-  const DiagramPass& pass = diagram.passes[place.pass];
+  const DiagramPass& pass = session_.pass(place.pass);
+  if (session_.knitout()) {
+    session_.edit_notation({}, {});  // says why not
+    return;
+  }
   if (!pass.line || pass.implied) {
     emit session_.refused(tr("These transfers follow from the letters: change the stitches instead."));
     return;
@@ -274,7 +322,7 @@ bool DiagramView::viewportEvent(QEvent* event) {
                          tr("%1 needle %2, course %3, line %4: %5")
                              .arg(place->rear ? tr("rear") : tr("front"))
                              .arg(session_.diagram().first_needle + place->wale)
-                             .arg(session_.diagram().passes[place->pass].course)
+                             .arg(session_.pass(place->pass).course)
                              .arg(here.at.line)
                              .arg(QLatin1String(name_of(here.operation))),
                          this);

@@ -4,6 +4,7 @@
 #pragma once
 #include <QAbstractScrollArea>
 #include <optional>
+#include <utility>
 
 #include "diagram_edits.hpp"
 #include "session.hpp"
@@ -23,8 +24,8 @@ class DiagramView : public QAbstractScrollArea {
   QPointF needle_place(std::size_t pass, bool rear, int wale) const;
   // Knitting needle by needle: how many acts there are, where the k-th is written, and drawing so many of
   // them in full and the rest faintly (-1: all).
-  int acts() const { return static_cast<int>(acts_.size()); }
-  SourceLocation act_place(int k) const { return acts_[static_cast<std::size_t>(k)].at; }
+  int acts() const;
+  SourceLocation act_place(int k) const;
   void show_acts(int count);
 
  public slots:
@@ -72,6 +73,9 @@ class DiagramView : public QAbstractScrollArea {
   std::optional<std::size_t> line_at_cursor();  // says why there is none
   void bars();
   void list_acts();
+  Act act(int k) const;
+  void show_pass(std::size_t p);
+  std::pair<std::size_t, std::size_t> passes_between(double top, double bottom) const;
   bool begun(std::size_t pass) const;
   bool done(std::size_t pass, double slot) const;
   std::optional<Place> place_at(const QPointF& at) const;
@@ -93,7 +97,7 @@ class DiagramView : public QAbstractScrollArea {
   std::vector<Row> rows_;
   double height_ = 0, width_ = 0;  // in pitches
   double least_slot_ = 0;
-  std::vector<Act> acts_;  // in knitting order
+  std::vector<Act> acts_;  // of a fabric file, in knitting order
   int shown_acts_ = -1;
   std::optional<Place> cursor_, anchor_, painted_;
   CopiedNeedles copied_;

@@ -1,8 +1,10 @@
 #include "document.hpp"
 
 #include <algorithm>
+#include <fstream>
 #include <utility>
 
+#include "cloth_file_job.hpp"
 #include "notation/read_program.hpp"
 #include "notation/scan.hpp"
 #include "outputs/atomic_file.hpp"
@@ -18,23 +20,40 @@ bool continues_a_character(char c) { return (static_cast<unsigned char>(c) & 0xC
 
 Document::Document() { open_text(std::string(empty_fabric), ".verm"); }
 
-std::string Document::name() const { return path_.empty() ? "untitled.verm" : path_.filename().string(); }
+std::string Document::name() const {
+  return path_.empty() ? "untitled" + suffix() : path_.filename().string();
+}
 
-std::string Document::suffix() const { return kind_ == DocumentKind::fabric ? ".verm" : ".k"; }
+std::string Document::suffix() const { return kind_ == DocumentKind::knitout ? ".k" : ".verm"; }
+
+bool Document::has_fabric_text() const { return is_fabric_text(text_, suffix()); }
 
 void Document::open(const std::filesystem::path& path) {
+  if (names_cloth(path)) {
+    // what is in it takes a while: whoever shows it reads it
+    if (!std::ifstream(path)) throw FileError(path.string() + ": cannot be read");
+    take({}, DocumentKind::cloth, path);
+    return;
+  }
   Diagnostics diagnostics(path.string());
   std::optional<std::string> text = read_text(path, diagnostics);
   if (!text)
     throw FileError(path.string() + ": " +
                     (diagnostics.list().empty() ? "cannot be read" : diagnostics.list().front().message));
   if (first_byte_not_utf8(*text) != std::string_view::npos)
-    throw FileError(path.string() + ": this is no text in UTF-8; open a fabric file (.verm) or knitout (.k)");
+    throw FileError(path.string() +
+                    ": this is no text in UTF-8; open a fabric file (.verm), knitout (.k), a "
+                    "saved state (.h5) or curves (.bcc, .yarns, .obj)");
   open_text(std::move(*text), path.extension().string(), path);
 }
 
 void Document::open_text(std::string text, std::string_view suffix, const std::filesystem::path& path) {
-  kind_ = is_fabric_text(text, suffix) ? DocumentKind::fabric : DocumentKind::knitout;
+  const DocumentKind kind = is_fabric_text(text, suffix) ? DocumentKind::fabric : DocumentKind::knitout;
+  take(std::move(text), kind, path);
+}
+
+void Document::take(std::string text, DocumentKind kind, const std::filesystem::path& path) {
+  kind_ = kind;
   text_ = std::move(text);
   path_ = path;
   history_.clear();
@@ -47,7 +66,15 @@ void Document::recover(std::string text, const std::filesystem::path& path) {
   saved_place_ = nowhere;
 }
 
+void Document::describe(std::string text) {
+  if (kind_ != DocumentKind::cloth || text == text_) return;
+  const std::size_t removed = std::exchange(text_, std::move(text)).size();
+  if (on_change) on_change({0, removed, text_.size(), false});
+}
+
 void Document::save(const std::filesystem::path& path) {
+  if (kind_ == DocumentKind::cloth)
+    throw FileError(path.string() + ": a file of cloth is written by File > Export, not saved as text");
   AtomicFile file(path);
   file.stream() << text_;
   file.commit();

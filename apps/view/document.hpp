@@ -10,7 +10,9 @@
 
 namespace loopwright {
 
-enum class DocumentKind { fabric, knitout };  // knitout is shown, not edited
+// Knitout is shown, not edited. cloth: a saved state or curves of another program; its text is what the file
+// says of itself, and is not written.
+enum class DocumentKind { fabric, knitout, cloth };
 
 class Document {
  public:
@@ -25,7 +27,8 @@ class Document {
   std::string name() const;                                    // for titles and messages
   std::string suffix() const;                                  // ".verm" or ".k"
   DocumentKind kind() const { return kind_; }
-  bool read_only() const { return kind_ == DocumentKind::knitout; }
+  bool read_only() const { return kind_ != DocumentKind::fabric; }
+  bool has_fabric_text() const;  // letters of a fabric file, whatever the document is
   bool changed() const { return place_ != saved_place_; }
 
   // Replaces what is open; nothing of that can be undone. open() throws FileError.
@@ -33,6 +36,8 @@ class Document {
   void open_text(std::string text, std::string_view suffix, const std::filesystem::path& path = {});
   void save(const std::filesystem::path& path);  // throws FileError; the document has that path then
   void mark_saved() { saved_place_ = place_; }   // the disk has this text already
+  // What a file of cloth says of itself, once it was read; no change of the document.
+  void describe(std::string text);
   // Text that was found after a crash: as open_text, but the document counts as changed.
   void recover(std::string text, const std::filesystem::path& path);
 
@@ -60,6 +65,7 @@ class Document {
     std::string what;
     bool joined = false;
   };
+  void take(std::string text, DocumentKind kind, const std::filesystem::path& path);
   void apply(std::size_t begin, std::string_view before, std::string_view after);
   bool joins(const Step& step) const;
 

@@ -5,6 +5,7 @@
 #include <QDoubleSpinBox>
 #include <QFormLayout>
 #include <QGroupBox>
+#include <QLabel>
 #include <QLineEdit>
 #include <QPushButton>
 #include <QScrollArea>
@@ -18,6 +19,7 @@
 #include "notation/material.hpp"
 #include "notation/scan.hpp"
 #include "panels.hpp"
+#include "yarn_facts.hpp"
 
 namespace loopwright {
 namespace {
@@ -58,6 +60,13 @@ FabricPanel::FabricPanel(Session& session, QWidget* parent) : QWidget(parent), s
   scroll->setWidgetResizable(true);
   scroll->setFrameShape(QFrame::NoFrame);
   outer->addWidget(scroll);
+  facts_ = new QLabel(this);
+  facts_->setObjectName(QStringLiteral("yarn facts"));
+  facts_->setWordWrap(true);
+  facts_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
+  facts_->setContentsMargins(6, 4, 6, 4);
+  facts_->setTextInteractionFlags(Qt::TextSelectableByMouse);
+  outer->addWidget(facts_);
   auto* content = new QWidget(scroll);
   auto* box = new QVBoxLayout(content);
   scroll->setWidget(content);
@@ -109,6 +118,11 @@ FabricPanel::FabricPanel(Session& session, QWidget* parent) : QWidget(parent), s
   box->addStretch();
 
   connect(&session_, &Session::reading_changed, this, &FabricPanel::show_settings);
+  connect(&session_, &Session::fabric_changed, facts_, [this] {
+    if (!session_.document().read_only()) return;
+    const QString facts = yarn_facts(session_.moment(), session_.document().kind());
+    if (facts != facts_->text()) facts_->setText(facts);
+  });
   show_settings();
 }
 
@@ -227,6 +241,7 @@ void FabricPanel::show_yarn_fields(std::size_t yarn) {
 void FabricPanel::show_settings() {
   // knitout's headers are the text's own
   form_->setVisible(!session_.document().read_only());
+  facts_->setVisible(session_.document().read_only());
   if (session_.document().read_only()) return;
   const auto& notation = session_.notation();
   if (!notation) return;  // errors: fields keep what they had

@@ -157,6 +157,7 @@ void MainWindow::build_status() {
 QString MainWindow::interlacings_text() const {
   const ClothMoment& moment = session_.moment();
   if (!session_.fabric()) return tr("no cloth");
+  if (moment.interlacings.expected == 0) return tr("no interlacings known");
   if (!session_.fabric_is_current()) return tr("last cloth");
   if (moment.interlacings.expected < 0) return tr("interlacings not counted yet");
   return tr("interlacings %1 of %2").arg(moment.interlacings.intact).arg(moment.interlacings.expected);
@@ -176,6 +177,11 @@ void MainWindow::show_status() {
       text = session_.working() ? tr("As knitted; relaxing \u2026")
                                 : tr("As knitted, not relaxed: Cloth > Relax (F6) relaxes this piece");
       break;
+    case ClothStage::as_saved:
+      text = moment.options || session_.document().kind() != DocumentKind::cloth
+                 ? tr("As the file holds it: Cloth > Relax (F6) goes on from there")
+                 : tr("As the file holds it");
+      break;
     case ClothStage::growing:
       text = tr("Yarn grows in: %1 %").arg(qRound(100 * moment.radius));
       break;
@@ -186,12 +192,16 @@ void MainWindow::show_status() {
       break;
     case ClothStage::at_rest:
       text = tr("At rest: %1 steps, %2 s").arg(moment.iterations).arg(moment.seconds, 0, 'f', 2);
+      if (moment.went_on) text += tr(", on from the cloth at hand (F5 knits anew)");
       break;
     case ClothStage::not_at_rest:
       text = tr("Not at rest: %1").arg(QString::fromStdString(moment.message));
       break;
     case ClothStage::stopped:
-      text = tr("Stopped after %1 steps; F5 goes on from the beginning").arg(moment.iterations);
+      text = moment.fabric ? tr("Stopped after %n step(s); F5 knits anew", "", moment.iterations)
+                                 .replace(QStringLiteral("(s)"),
+                                          moment.iterations == 1 ? QString() : QStringLiteral("s"))
+                           : tr("Stopped before there was cloth; F5 knits it");
       break;
   }
   stage_->setText(text);
@@ -215,6 +225,8 @@ void MainWindow::show_title() {
   Document& document = session_.document();
   setWindowTitle(QStringLiteral("%1[*] \u2013 Loopwright").arg(QString::fromStdString(document.name())));
   setWindowModified(document.changed());
+  if (auto* dock = findChild<QDockWidget*>(QStringLiteral("dock notation")))
+    dock->setWindowTitle(document.read_only() ? tr("Notation (shown, not edited)") : tr("Notation"));
 }
 
 void MainWindow::say(const QString& what) {

@@ -54,7 +54,7 @@ class MainWindow : public QMainWindow {
   void build_diagram_bar();
   void build_help_menu();
   void build_status();
-  void add_templates(QMenu* menu);
+  void add_built_in(QMenu* menu, const QString& folder);
   void show_recent(QMenu* menu);
   void remember(const QString& path);
   void show_title();

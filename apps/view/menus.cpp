@@ -1,7 +1,6 @@
 // Menus and tool bars of the window.
 #include <QActionGroup>
 #include <QComboBox>
-#include <QDesktopServices>
 #include <QDir>
 #include <QFileDialog>
 #include <QFileInfo>
@@ -16,7 +15,6 @@
 #include <QStatusBar>
 #include <QToolBar>
 #include <QVBoxLayout>
-#include <QWizard>
 #include <algorithm>
 
 #include "main_window.hpp"
@@ -51,18 +49,35 @@ void add_choices(QMenu* menu, QObject* parent,
 void MainWindow::build_file_menu() {
   QMenu* menu = menuBar()->addMenu(tr("&File"));
   QMenu* fresh = menu->addMenu(tr("&New from a structure"));
-  connect(fresh, &QMenu::aboutToShow, this, [this, fresh] {
-    if (fresh->isEmpty()) add_templates(fresh);
-  });
+  connect(fresh, &QMenu::aboutToShow, this,
+          [this, fresh] { add_built_in(fresh, QStringLiteral(":/structures")); });
+  QMenu* examples = menu->addMenu(tr("E&xamples"));
+  connect(examples, &QMenu::aboutToShow, this,
+          [this, examples] { add_built_in(examples, QStringLiteral(":/examples")); });
   connect(add(menu, tr("New &plain"), QKeySequence::New), &QAction::triggered, this, [this] {
     if (may_leave())
       session_.document().open_text(std::string(Document::empty_fabric), ".verm"), show_title();
   });
   connect(add(menu, tr("&Open \u2026"), QKeySequence::Open), &QAction::triggered, this, [this] {
     if (!may_leave()) return;
-    const QString path = QFileDialog::getOpenFileName(this, tr("Open"), QString(),
-                                                      tr("Notations (*.verm *.k *.knitout);;All files (*)"));
+    const QString path = QFileDialog::getOpenFileName(
+        this, tr("Open"), QString(),
+        tr("Notations and cloth (*.verm *.k *.knitout *.h5 *.bcc *.yarns *.obj);;"
+           "Notations (*.verm *.k *.knitout);;Saved states (*.h5);;"
+           "Curves (*.bcc *.yarns *.obj);;All files (*)"));
     if (!path.isEmpty()) open(path);
+  });
+  QAction* from_state = add(menu, tr("New from this &notation"), {},
+                            tr("The notation of a saved state as a fabric file of its own"));
+  from_state->setObjectName(QStringLiteral("new from state"));
+  from_state->setEnabled(false);
+  connect(&session_, &Session::text_changed, from_state, [this, from_state] {
+    const Document& document = session_.document();
+    from_state->setEnabled(document.kind() == DocumentKind::cloth && document.has_fabric_text());
+  });
+  connect(from_state, &QAction::triggered, this, [this] {
+    session_.document().open_text(session_.document().text(), ".verm");
+    show_title();
   });
   QMenu* recent = menu->addMenu(tr("&Recent"));
   connect(recent, &QMenu::aboutToShow, this, [this, recent] { show_recent(recent); });
@@ -87,16 +102,18 @@ void MainWindow::build_file_menu() {
   connect(add(menu, tr("&Quit"), QKeySequence::Quit), &QAction::triggered, this, &QWidget::close);
 }
 
-// The library of structures is built in.
-void MainWindow::add_templates(QMenu* menu) {
-  const QDir library(QStringLiteral(":/structures"));
-  for (const QFileInfo& file : library.entryInfoList({QStringLiteral("*.verm")}, QDir::Files, QDir::Name)) {
+// The library of structures and the project's examples are built in; they open as new files.
+void MainWindow::add_built_in(QMenu* menu, const QString& folder) {
+  if (!menu->isEmpty()) return;
+  for (const QFileInfo& file : QDir(folder).entryInfoList(QDir::Files, QDir::Name)) {
     QString name = file.completeBaseName();
     name.replace(QLatin1Char('_'), QLatin1Char(' '));
+    if (file.suffix() != QLatin1String("verm")) name += QStringLiteral(" (%1)").arg(file.suffix());
     connect(menu->addAction(name), &QAction::triggered, this, [this, path = file.filePath()] {
       QFile source(path);
       if (!may_leave() || !source.open(QIODevice::ReadOnly)) return;
-      session_.document().open_text(source.readAll().toStdString(), ".verm");
+      session_.document().open_text(source.readAll().toStdString(),
+                                    "." + QFileInfo(path).suffix().toStdString());
       show_title();
     });
   }
@@ -135,6 +152,14 @@ void MainWindow::build_edit_menu() {
     find->setFocus();
     find->selectAll();
   });
+  menu->addSeparator();
+  connect(add(menu, tr("Fold or unfold this &pass"), QKeySequence(Qt::CTRL | Qt::Key_Period),
+              tr("Knitout: shows the first line of the pass at the cursor")),
+          &QAction::triggered, editor_, &NotationEditor::toggle_fold_at_cursor);
+  connect(add(menu, tr("Fold &all passes"), QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_BracketLeft)),
+          &QAction::triggered, this, [this] { editor_->fold_all(true); });
+  connect(add(menu, tr("U&nfold all passes"), QKeySequence(Qt::CTRL | Qt::SHIFT | Qt::Key_BracketRight)),
+          &QAction::triggered, this, [this] { editor_->fold_all(false); });
 }
 
 void MainWindow::build_view_menu() {
@@ -306,61 +331,8 @@ void MainWindow::build_diagram_bar() {
   });
   connect(slider, &QSlider::valueChanged, this, [this](int count) {
     diagram_->show_acts(count);
-    if (count > 0 && count <= diagram_->acts()) editor_->go_to(diagram_->act_place(count - 1));
+    if (count > 0 && count <= diagram_->acts()) editor_->go_to(diagram_->act_place(count - 1), false);
   });
-}
-
-void MainWindow::build_help_menu() {
-  QMenu* menu = menuBar()->addMenu(tr("&Help"));
-  connect(menu->addAction(tr("&Tour")), &QAction::triggered, this, &MainWindow::start_tour);
-  connect(menu->addAction(tr("&Keys and mouse")), &QAction::triggered, this, [this] {
-    QMessageBox::information(
-        this, tr("Keys and mouse"),
-        tr("<b>Cloth</b>: left click chooses a loop, left drag turns; wheel zooms; the middle button pans "
-           "(FreeCAD) or "
-           "turns (Blender); right drag turns. 1 front, 2 left, 3 top, 4 corner, 5 back, 0 or double click "
-           "fits. "
-           "Drag an edge of cloth at rest to stretch it, Ctrl+drag a yarn to pull it; in the structure style "
-           "drag a binding point.<br><br>"
-           "<b>Diagram</b>: arrows move, letters (g e v n . - t T s S d D) work the needle, Shift+arrows "
-           "select, "
-           "Ctrl+C, Ctrl+V, Ctrl+R repeat, Insert a course, Shift+Insert a wale.<br><br>"
-           "<b>Cloth menu</b>: F5 knits again, F6 relaxes a large piece, Esc cancels."));
-  });
-  connect(menu->addAction(tr("&About")), &QAction::triggered, this, [this] {
-    QMessageBox::about(this, tr("Loopwright"),
-                       tr("Loopwright " LOOPWRIGHT_VERSION
-                          ": from a knitting notation to relaxed cloth.\nApache License 2.0."));
-  });
-}
-
-void MainWindow::start_tour() {
-  QWizard tour(this);
-  tour.setWindowTitle(tr("Loopwright in five steps"));
-  const std::vector<std::pair<QString, QString>> steps{
-      {tr("1. Write"),
-       tr("Left above is the notation: g is a front stitch, e a rear stitch, one line per course. Change "
-          "a letter and watch the cloth.")},
-      {tr("2. Draw"),
-       tr("Left below is the same as a needle diagram. Take the tool Stitch or Tuck and click a needle; "
-          "the text follows, and Ctrl+Z takes it back.")},
-      {tr("3. Look"),
-       tr("The cloth in the middle is the yarn in equilibrium. Turn it with the mouse, press 1 to 4 for "
-          "views, colour it by tension in the View menu.")},
-      {tr("4. Choose"),
-       tr("Click a loop: its letter and needle are marked, and the Loop panel tells what it is.")},
-      {tr("5. Pull"),
-       tr("Move the slider under Stretch, or drag an edge of the cloth. The status line always says "
-          "whether all interlacings are whole.")}};
-  for (const auto& [title, text] : steps) {
-    auto* page = new QWizardPage;
-    page->setTitle(title);
-    auto* label = new QLabel(text, page);
-    label->setWordWrap(true);
-    (new QVBoxLayout(page))->addWidget(label);
-    tour.addPage(page);
-  }
-  tour.exec();
 }
 
 }  // namespace loopwright

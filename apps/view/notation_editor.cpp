@@ -20,6 +20,8 @@ QString shown_text(const std::string& text) {
   return shown;
 }
 
+constexpr int fold_mark = 14;  // pixels
+
 class LineNumbers : public QWidget {
  public:
   explicit LineNumbers(NotationEditor* editor) : QWidget(editor), editor_(editor) {}
@@ -27,10 +29,15 @@ class LineNumbers : public QWidget {
 
  protected:
   void paintEvent(QPaintEvent* event) override { editor_->paint_numbers(event); }
+  void mousePressEvent(QMouseEvent* event) override { editor_->toggle_fold_at(event->position().y()); }
 
  private:
   NotationEditor* editor_;
 };
+
+DocumentKind kind_of_text(const Document& document) {
+  return document.has_fabric_text() ? DocumentKind::fabric : DocumentKind::knitout;
+}
 
 QColor severity_colour(Severity severity) {
   return severity == Severity::error     ? QColor(210, 50, 40)
@@ -62,6 +69,7 @@ NotationEditor::NotationEditor(Session& session, QWidget* parent)
       numbers_->update(0, rect.y(), numbers_->width(), rect.height());
   });
   connect(&session_, &Session::text_changed, this, &NotationEditor::take_change);
+  connect(&session_, &Session::reading_changed, this, &NotationEditor::take_folds);
   connect(&session_, &Session::reading_changed, this, &NotationEditor::mark);
   connect(&session_, &Session::selection_changed, this, [this] {
     mark();
@@ -74,7 +82,7 @@ NotationEditor::NotationEditor(Session& session, QWidget* parent)
 
 int NotationEditor::number_width() const {
   const int digits = std::max(2, static_cast<int>(QString::number(blockCount()).size()));
-  return 12 + digits * fontMetrics().horizontalAdvance(QLatin1Char('9'));
+  return 12 + digits * fontMetrics().horizontalAdvance(QLatin1Char('9')) + (folded_.empty() ? 0 : fold_mark);
 }
 
 void NotationEditor::resizeEvent(QResizeEvent* event) {
@@ -88,7 +96,12 @@ void NotationEditor::paint_numbers(QPaintEvent* event) {
   painter.fillRect(event->rect(), palette().color(QPalette::AlternateBase));
   QTextBlock block = firstVisibleBlock();
   int top = qRound(blockBoundingGeometry(block).translated(contentOffset()).top());
+  const std::vector<Fold>& folds = fold_lines();
   while (block.isValid() && top <= event->rect().bottom()) {
+    if (!block.isVisible()) {
+      block = block.next();
+      continue;
+    }
     const int line = block.blockNumber() + 1, height = qRound(blockBoundingRect(block).height());
     // a dot stands beside lines that have a message
     for (const Diagnostic& message : session_.diagnostics().list())
@@ -99,7 +112,17 @@ void NotationEditor::paint_numbers(QPaintEvent* event) {
         break;
       }
     painter.setPen(palette().color(QPalette::PlaceholderText));
-    painter.drawText(0, top, numbers_->width() - 4, height, Qt::AlignRight, QString::number(line));
+    const int room = numbers_->width() - 4 - (folded_.empty() ? 0 : fold_mark);
+    painter.drawText(0, top, room, height, Qt::AlignRight, QString::number(line));
+    if (const auto fold = fold_of(line); fold && folds[*fold].first_line == line) {
+      const double x = numbers_->width() - fold_mark / 2.0 - 1, y = top + height / 2.0;
+      painter.setPen(Qt::NoPen);
+      painter.setBrush(palette().color(QPalette::PlaceholderText));
+      if (folded_[*fold])
+        painter.drawPolygon(QPolygonF({{x - 2.5, y - 4}, {x + 3.5, y}, {x - 2.5, y + 4}}));
+      else
+        painter.drawPolygon(QPolygonF({{x - 4, y - 2.5}, {x + 4, y - 2.5}, {x, y + 3.5}}));
+    }
     top += height;
     block = block.next();
   }
@@ -126,11 +149,12 @@ void NotationEditor::take_change(qsizetype, qsizetype, qsizetype, bool whole) {
   taking_ = true;
   const QString wanted = shown_text(session_.document().text());
   if (whole) {
-    highlighter_->set_kind(session_.document().kind());
+    highlighter_->set_kind(kind_of_text(session_.document()));
     setReadOnly(session_.document().read_only());
     setPlainText(wanted);
   } else {
     // the smallest piece that differs
+    if (session_.document().read_only()) highlighter_->set_kind(kind_of_text(session_.document()));
     const QString shown = toPlainText();
     const qsizetype shorter = std::min(shown.size(), wanted.size());
     qsizetype head = 0, tail = 0;
@@ -159,8 +183,15 @@ SourceLocation NotationEditor::location_of(const QTextCursor& cursor) const {
   return {cursor.blockNumber() + 1, static_cast<int>(before.toUtf8().size()) + 1};
 }
 
-void NotationEditor::go_to(SourceLocation at) {
+void NotationEditor::go_to(SourceLocation at, bool opens) {
   if (at.line <= 0) return;
+  if (const auto fold = fold_of(at.line);
+      fold && folded_[*fold] && at.line > fold_lines()[*fold].first_line) {
+    if (opens)
+      set_folded(*fold, false);
+    else
+      at = {fold_lines()[*fold].first_line, 0};
+  }
   setTextCursor(cursor_at(at));
   ensureCursorVisible();
 }
@@ -168,13 +199,19 @@ void NotationEditor::go_to(SourceLocation at) {
 bool NotationEditor::find_next(const QString& what, bool backwards) {
   if (what.isEmpty()) return false;
   const QTextDocument::FindFlags flags = backwards ? QTextDocument::FindBackward : QTextDocument::FindFlags();
-  if (find(what, flags)) return true;
+  // what was found may lie in a folded pass
+  const auto found = [this] {
+    if (const auto fold = fold_of(textCursor().blockNumber() + 1)) set_folded(*fold, false);
+    ensureCursorVisible();
+    return true;
+  };
+  if (find(what, flags)) return found();
   // round the end
   QTextCursor cursor = textCursor();
   cursor.movePosition(backwards ? QTextCursor::End : QTextCursor::Start);
   const QTextCursor kept = textCursor();
   setTextCursor(cursor);
-  if (find(what, flags)) return true;
+  if (find(what, flags)) return found();
   setTextCursor(kept);
   return false;
 }

@@ -132,18 +132,28 @@ MeasuresPanel::MeasuresPanel(Session& session, QWidget* parent)
 
 void MeasuresPanel::show_measures() {
   const ClothMoment& moment = session_.moment();
-  if (moment.relaxed == measured_ && measured_) return;
-  measured_ = moment.relaxed;
-  if (!moment.relaxed) {
-    text_->setText(tr("Sizes are measured when the cloth is at rest."));
-    return;
-  }
   if (moment.broken()) {
+    measured_ = nullptr;
     text_->setText(tr("Nothing is measured: the cloth is broken."));
     return;
   }
-  const Measurements m = measure(moment.relaxed->fabric);
+  if (moment.measured == measured_ && measured_) return;
+  measured_ = moment.measured;
+  if (!moment.measured) {
+    text_->setText(tr("Sizes are measured when the cloth is at rest."));
+    return;
+  }
+  const Measurements& m = *moment.measured;
   Rows rows;
+  if (m.loops == 0) {  // curves
+    rows.add(tr("Yarns"), QString::number(m.yarns));
+    rows.add(tr("Length of yarn"), number(m.yarn_m, 4, "m"));
+    rows.add(tr("Width \u00d7 height"),
+             number(m.width_mm, 4, "") + QStringLiteral(" \u00d7 ") + number(m.height_mm, 4, "mm"));
+    rows.add(tr("Thickness"), number(m.thickness_mm, 3, "mm"));
+    text_->setText(rows.html());
+    return;
+  }
   rows.add(tr("Wales \u00d7 courses"), QStringLiteral("%1 \u00d7 %2").arg(m.wales).arg(m.courses));
   rows.add(tr("Width \u00d7 height"),
            number(m.width_mm, 4, "") + QStringLiteral(" \u00d7 ") + number(m.height_mm, 4, "mm"));

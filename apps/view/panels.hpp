@@ -40,7 +40,7 @@ class MeasuresPanel : public QWidget {
   void show_measures();
   Session& session_;
   QLabel* text_;
-  std::shared_ptr<const RelaxResult> measured_;
+  std::shared_ptr<const Measurements> measured_;
 };
 
 // What is wrong or doubtful; a click goes to the line.
@@ -77,6 +77,7 @@ class FabricPanel : public QWidget {
   Session& session_;
   bool filling_ = false;
   QWidget* form_;
+  QLabel* facts_;  // in the place of the form, for what is not edited here
   QFormLayout* yarn_form_;
   std::vector<std::pair<const char*, QDoubleSpinBox*>> numbers_;
   QComboBox *edges_, *gating_;

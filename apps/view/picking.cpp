@@ -29,13 +29,16 @@ int loop_span_at(const Fabric& fabric, int yarn, double t) {
   return -1;
 }
 
-std::optional<PickedYarn> yarn_at(const Fabric& fabric, std::array<int, 2> repeats, const Sight& sight) {
+std::optional<PickedYarn> yarn_at(const Fabric& fabric, std::array<int, 2> repeats, const Sight& sight,
+                                  const std::vector<double>& fed) {
   constexpr int per_segment = 4;
   std::optional<PickedYarn> best;
   double foremost = std::numeric_limits<double>::infinity();
   for (std::size_t y = 0; y < fabric.yarns.size(); ++y) {
     const FabricYarn& yarn = fabric.yarns[y];
-    const std::vector<Vec3> points = polyline(fabric, yarn, per_segment);
+    std::vector<Vec3> points = polyline(fabric, yarn, per_segment);
+    if (!fed.empty())
+      points.resize(std::min(points.size(), static_cast<std::size_t>(std::ceil(per_segment * fed[y]))));
     const double radius = yarn.diameter / 2;
     for (int n = 0; n < repeats[1]; ++n)
       for (int m = 0; m < repeats[0]; ++m) {

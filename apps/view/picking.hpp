@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <optional>
+#include <vector>
 
 #include "geometry/fabric.hpp"
 #include "outputs/camera.hpp"
@@ -22,8 +23,10 @@ struct PickedYarn {
   Vec3 place;
 };
 
-// The foremost yarn on a line of sight, among the drawn repeats.
-std::optional<PickedYarn> yarn_at(const Fabric& fabric, std::array<int, 2> repeats, const Sight& sight);
+// The foremost yarn on a line of sight, among the drawn repeats. `fed`: how far each yarn is there, in its
+// parameter; empty: whole.
+std::optional<PickedYarn> yarn_at(const Fabric& fabric, std::array<int, 2> repeats, const Sight& sight,
+                                  const std::vector<double>& fed = {});
 
 // The span of a fabric's loops that holds a place of a yarn; -1 if none does.
 int loop_span_at(const Fabric& fabric, int yarn, double t);

@@ -20,10 +20,18 @@ double now_s() {
 
 Session::Session(QObject* parent) : QObject(parent) {
   document_.on_change = [this](const Document::Change& change) {
+    if (describing_) {
+      emit text_changed(static_cast<qsizetype>(change.begin), static_cast<qsizetype>(change.removed),
+                        static_cast<qsizetype>(change.inserted), false);
+      read_text();
+      return;
+    }
     emit text_changed(static_cast<qsizetype>(change.begin), static_cast<qsizetype>(change.removed),
                       static_cast<qsizetype>(change.inserted), change.whole);
     if (change.whole) {
       fabric_ = nullptr;
+      knitout_ = nullptr;
+      at_hand_.reset();
       diagram_ = {};
       selection_ = {};
       moment_ = {};
@@ -31,8 +39,9 @@ Session::Session(QObject* parent) : QObject(parent) {
       emit selection_changed();
     }
     read_text();
-    if (automatic_ || change.whole) make_cloth_anew();
+    if (automatic_ || change.whole) start_cloth(ClothRequest().most_loops, true);
   };
+  read_text();  // of the piece that a new window starts with
 }
 
 Session::~Session() { worker_.cancel(); }
@@ -43,8 +52,10 @@ void Session::read_text() {
   diagnostics_ = Diagnostics(document_.name());
   notation_ = nullptr;
   diagram_is_current_ = false;
+  shown_passes_.clear();
+  knit_until(-1);
   const std::string& text = document_.text();
-  if (document_.kind() == DocumentKind::fabric && text.size() < most_bytes_read_at_once) {
+  if (document_.has_fabric_text() && text.size() < most_bytes_read_at_once) {
     const auto notation = std::make_shared<const Vermiculation>(parse_vermiculation(text, diagnostics_));
     if (diagnostics_.ok()) {
       notation_ = notation;
@@ -70,12 +81,26 @@ void Session::set_automatic(bool automatic) {
   if (automatic && !fabric_is_current_) make_cloth_anew();
 }
 
-void Session::make_cloth_anew() { start_cloth(ClothRequest().most_loops); }
+std::size_t Session::passes() const { return knitout_ ? knitout_->diagram().size() : diagram_.passes.size(); }
 
-void Session::relax_whole() { start_cloth(static_cast<std::size_t>(-1)); }
+const DiagramPass& Session::pass(std::size_t p) const {
+  return knitout_ ? shown_passes_.pass(knitout_->diagram(), p) : diagram_.passes[p];
+}
 
-void Session::start_cloth(std::size_t most_loops) {
+void Session::knit_until(int instruction) {
+  if (instruction == knitted_until_) return;
+  knitted_until_ = instruction;
+  emit knitted_changed();
+}
+
+void Session::make_cloth_anew() { start_cloth(ClothRequest().most_loops, false); }
+
+void Session::relax_whole() { start_cloth(static_cast<std::size_t>(-1), false); }
+
+void Session::start_cloth(std::size_t most_loops, bool from_hand) {
   ClothRequest request;
+  if (document_.kind() == DocumentKind::cloth) request.cloth_file = document_.path();
+  if (from_hand) request.at_hand = at_hand_;
   request.text = document_.text();
   request.suffix = document_.suffix();
   request.name = document_.name();
@@ -116,17 +141,20 @@ void Session::end_work(int serial) {
 
 void Session::take_moment(int serial, ClothMoment moment) {
   if (serial != serial_) return;  // of a text that is no more
+  if (moment.text && moment.text != moment_.text) {
+    describing_ = true;
+    document_.describe(*moment.text);
+    describing_ = false;
+  }
   const bool fresh = moment.fabric && moment.fabric != moment_.fabric;
   if (moment.diagnostics && moment.diagnostics != moment_.diagnostics) {
     diagnostics_ = *moment.diagnostics;
     if (moment.stage == ClothStage::unusable && diagnostics_.ok()) diagnostics_.error({}, moment.message);
-    if (document_.kind() == DocumentKind::knitout && moment.knitting) {
-      try {
-        diagram_ = needle_diagram(moment.knitting->program, {0, 0, 0, 400});
-        diagram_is_current_ = true;
-      } catch (const std::invalid_argument&) {
-        diagram_ = {};
-      }
+    if (moment.passes) {
+      knitout_ = moment.passes;
+      shown_passes_.clear();
+      diagram_ = knitout_->diagram().frame();
+      diagram_is_current_ = true;
     }
     moment_ = moment;
     emit reading_changed();
@@ -135,6 +163,9 @@ void Session::take_moment(int serial, ClothMoment moment) {
     emit reading_changed();
   }
   moment_ = std::move(moment);
+  if (moment_.relaxed) at_rest_ = moment_.interlacings;
+  if (moment_.stage == ClothStage::at_rest && moment_.knitting && !moment_.broken())
+    at_hand_ = ClothAtHand{moment_.knitting, moment_.relaxed, moment_.options};
   if (fresh) {
     fabric_ = moment_.fabric;
     fabric_is_current_ = true;
@@ -153,7 +184,10 @@ void Session::cancel() { worker_.cancel(); }
 
 bool Session::edit_notation(const QString& what, const std::function<std::string(Vermiculation&)>& edit) {
   if (document_.read_only()) {
-    emit refused(tr("A knitout file is shown as it is; write a fabric file to change it."));
+    emit refused(
+        document_.kind() == DocumentKind::knitout
+            ? tr("A knitout file is shown as it is; write a fabric file to change it.")
+            : tr("A file of cloth is shown as it is; File > New from this notation opens its notation."));
     return false;
   }
   if (!notation_) {
@@ -294,7 +328,7 @@ void Session::forget_stretch() {
   broken_pass_throughs_ = 0;
   stretch_points_.clear();
   fabric_ = moment_.fabric;
-  if (fabric_) moment_.interlacings = check_interlacings(*fabric_);
+  moment_.interlacings = at_rest_;
   emit fabric_changed();
   emit stretch_changed();
   emit moment_changed();

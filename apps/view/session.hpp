@@ -31,7 +31,15 @@ class Session : public QObject {
   // The cloth that is shown: the last good one, while a new one is made or where the text has errors.
   const std::shared_ptr<const Fabric>& fabric() const { return fabric_; }
   bool fabric_is_current() const { return fabric_is_current_; }
+  // Its passes are asked for one by one: knitout may have many thousand.
   const NeedleDiagram& diagram() const { return diagram_; }
+  std::size_t passes() const;
+  const DiagramPass& pass(std::size_t p) const;
+  const std::shared_ptr<const KnitoutPasses>& knitout() const { return knitout_; }  // none for fabric files
+  // Knitting needle by needle: loops that this instruction of the programme or an earlier one formed; -1:
+  // all.
+  int knitted_until() const { return knitted_until_; }
+  void knit_until(int instruction);
   bool diagram_is_current() const { return diagram_is_current_; }
   const std::shared_ptr<const Vermiculation>& notation() const { return notation_; }
   // Of the text as it is: of the notation at once, of machine and geometry when they have been asked.
@@ -66,7 +74,7 @@ class Session : public QObject {
   void pull(const Vec3& force);
 
  public slots:
-  void make_cloth_anew();  // as the choice of piece says, live limits respected
+  void make_cloth_anew();  // from the first geometry, as the choice of piece says, live limits respected
   void relax_whole();      // whatever its size
   void cancel();
   void undo();
@@ -77,13 +85,14 @@ class Session : public QObject {
   void reading_changed();  // notation, diagram, diagnostics
   void moment_changed();   // stage, numbers, and perhaps the fabric
   void fabric_changed();
+  void knitted_changed();  // by the slider
   void selection_changed();
   void stretch_changed();
   void refused(const QString& why);  // an edit that cannot be
 
  private:
   void read_text();
-  void start_cloth(std::size_t most_loops);
+  void start_cloth(std::size_t most_loops, bool from_hand);
   void end_work(int serial);
   void take_moment(int serial, ClothMoment moment);
   // Runs a hand's work in the worker; it answers the cloth that it came to.
@@ -99,6 +108,12 @@ class Session : public QObject {
   Document document_;
   std::shared_ptr<const Vermiculation> notation_;
   NeedleDiagram diagram_;
+  std::shared_ptr<const KnitoutPasses> knitout_;
+  mutable PassCache shown_passes_;
+  int knitted_until_ = -1;
+  bool describing_ = false;
+  std::optional<ClothAtHand> at_hand_;
+  InterlacingCheck at_rest_;  // of the cloth before a hand changed it
   bool diagram_is_current_ = false, fabric_is_current_ = false, automatic_ = true, working_ = false;
   Diagnostics diagnostics_;
   Selection selection_;

@@ -5,6 +5,8 @@
 #include <QPushButton>
 #include <QSlider>
 #include <QVBoxLayout>
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "outputs/write_csv.hpp"
@@ -18,13 +20,15 @@ StretchPanel::StretchPanel(Session& session, QWidget* parent) : QWidget(parent),
   auto* row = new QHBoxLayout;
   directions_ = new QComboBox(this);
   directions_->setObjectName(QStringLiteral("stretch direction"));
-  directions_->addItems({tr("Course"), tr("Wale"), tr("Both ways")});
+  directions_->addItems({tr("Course"), tr("Wale"), tr("Both ways"), tr("Shear")});
   row->addWidget(directions_);
   slider_ = new QSlider(Qt::Horizontal, this);
   slider_->setObjectName(QStringLiteral("stretch"));
   slider_->setRange(-20, 80);  // percent
   slider_->setPageStep(5);
-  slider_->setToolTip(tr("Strain of the cloth at rest; the frame goes there in steps of 2 %"));
+  slider_->setToolTip(
+      tr("Strain of the cloth at rest, or its shear (what the upper edge moves along the courses over the "
+         "height); the frame goes there in steps of 2 %"));
   row->addWidget(slider_, 1);
   value_ = new QLabel(QStringLiteral("0 %"), this);
   value_->setMinimumWidth(48);
@@ -59,15 +63,18 @@ StretchPanel::StretchPanel(Session& session, QWidget* parent) : QWidget(parent),
 }
 
 StretchDirection StretchPanel::direction() const {
-  return directions_->currentIndex() == 0   ? StretchDirection::course
-         : directions_->currentIndex() == 1 ? StretchDirection::wale
-                                            : StretchDirection::both;
+  constexpr std::array in_order{StretchDirection::course, StretchDirection::wale, StretchDirection::both,
+                                StretchDirection::shear};
+  return in_order[static_cast<std::size_t>(std::clamp(directions_->currentIndex(), 0, 3))];
 }
 
 void StretchPanel::ask() { session_.stretch_to(direction(), slider_->value() / 100.0); }
 
 void StretchPanel::set_strain(StretchDirection way, double strain) {
-  const int index = way == StretchDirection::course ? 0 : way == StretchDirection::wale ? 1 : 2;
+  const int index = way == StretchDirection::course ? 0
+                    : way == StretchDirection::wale ? 1
+                    : way == StretchDirection::both ? 2
+                                                    : 3;
   if (index != directions_->currentIndex()) {
     directions_->setCurrentIndex(index);
     session_.forget_stretch();
@@ -83,7 +90,18 @@ void StretchPanel::show_points() {
     slider_->setValue(0);
     value_->setText(QStringLiteral("0 %"));
   }
-  Plot plot{"", "strain, %", "force per length, N/m", {}};
+  const bool shears = direction() == StretchDirection::shear;
+  Plot plot{"", shears ? "shear, %" : "strain, %", "force per length, N/m", {}};
+  if (shears) {
+    PlotCurve shear{"shear", {}, {}};
+    for (const StretchPoint& p : points) {
+      shear.x.push_back(100 * p.shear);
+      shear.y.push_back(p.shear_force);
+    }
+    plot.curves.push_back(std::move(shear));
+    plot_->set_plot(std::move(plot));
+    return;
+  }
   PlotCurve course{"along the courses", {}, {}}, wale{"along the wales", {}, {}};
   for (const StretchPoint& p : points) {
     course.x.push_back(100 * (direction() == StretchDirection::wale ? p.wale_strain : p.course_strain));
@@ -102,11 +120,12 @@ void StretchPanel::write_curve(const QString& path) const {
     return;
   }
   Table table;
-  table.columns = {"course_strain",      "wale_strain",  "course_force_N_per_m",
-                   "wale_force_N_per_m", "interlacings", "interlacings_intact"};
+  table.columns = {"course_strain",      "wale_strain",         "shear",        "course_force_N_per_m",
+                   "wale_force_N_per_m", "shear_force_N_per_m", "interlacings", "interlacings_intact"};
   for (const StretchPoint& p : session_.stretch_points())
-    table.rows.push_back({p.course_strain, p.wale_strain, p.course_force, p.wale_force,
-                          static_cast<double>(p.interlacings), static_cast<double>(p.interlacings_intact)});
+    table.rows.push_back({p.course_strain, p.wale_strain, p.shear, p.course_force, p.wale_force,
+                          p.shear_force, static_cast<double>(p.interlacings),
+                          static_cast<double>(p.interlacings_intact)});
   write_csv(path.toStdString(), table);
 }
 

@@ -25,6 +25,8 @@ StretchSession::StretchSession(const RelaxResult& rest, RelaxOptions options, St
     throw std::invalid_argument("only a repeat or a piece with held edges can be stretched");
   options_.grow_in = false;
   options_.model.plates = rest.plates;
+  if (direction == StretchDirection::shear && !rest_.periodic)
+    throw std::invalid_argument("only a repeat that tiles the plane can be sheared");
   // the size that is not pulled follows, so that its force is zero
   const FreeMeasures usual = options_.model.free;
   options_.model.free = {!pulls_courses(direction) && usual.width, !pulls_wales(direction) && usual.height,
@@ -38,6 +40,8 @@ StretchPoint StretchSession::point() const {
   StretchPoint p;
   p.course_strain = at_.fabric.width / rest_.width - 1;
   p.wale_strain = at_.fabric.height / rest_.height - 1;
+  p.shear = (at_.fabric.skew - rest_.skew) / rest_.height;
+  p.shear_force = at_.measure_forces[2] * force_unit / width;
   p.course_force = at_.measure_forces[0] * force_unit / height;
   p.wale_force = at_.measure_forces[1] * force_unit / width;
   p.energy = (at_.energy.stored() - energy_at_rest_) * bend / d / (width * height);
@@ -52,8 +56,10 @@ StretchPoint StretchSession::go_to(double strain, const std::function<bool(const
   for (int k = 1; k <= steps; ++k) {
     const double to = from + (strain - from) * k / steps;
     const Fabric& now = at_.fabric;
-    const Fabric moved = deformed(now, pulls_courses(direction_) ? rest_.width * (1 + to) : now.width,
-                                  pulls_wales(direction_) ? rest_.height * (1 + to) : now.height, now.skew);
+    const Fabric moved =
+        deformed(now, pulls_courses(direction_) ? rest_.width * (1 + to) : now.width,
+                 pulls_wales(direction_) ? rest_.height * (1 + to) : now.height,
+                 direction_ == StretchDirection::shear ? rest_.skew + to * rest_.height : now.skew);
     options_.history = at_.history;
     at_ = relax(moved, options_);
     strain_ = to;

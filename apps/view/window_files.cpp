@@ -6,6 +6,7 @@
 #include <QMimeData>
 #include <QSettings>
 
+#include "cloth_file_job.hpp"
 #include "main_window.hpp"
 #include "notation/read_program.hpp"
 #include "outputs/atomic_file.hpp"
@@ -37,6 +38,11 @@ void MainWindow::watch() {
 void MainWindow::take_changed_file() {
   watch();  // a file that was replaced is a new one to the watcher
   Document& document = session_.document();
+  if (document.kind() == DocumentKind::cloth) {
+    // half-written files are told by their reader, and come again
+    if (QFileInfo::exists(QString::fromStdString(document.path().string()))) document.open(document.path());
+    return;
+  }
   Diagnostics unread;
   const auto text = read_text(document.path(), unread);
   if (!text || *text == document.text()) return;
@@ -73,11 +79,21 @@ bool MainWindow::save_to(const QString& path) {
 }
 
 bool MainWindow::save() {
+  if (session_.document().kind() == DocumentKind::cloth) {
+    say(tr(
+        "A file of cloth is shown as it is: File > Export writes a state anew, File > New from this notation "
+        "opens its notation."));
+    return false;
+  }
   const auto& path = session_.document().path();
   return path.empty() ? save_as() : save_to(QString::fromStdString(path.string()));
 }
 
 bool MainWindow::save_as() {
+  if (session_.document().kind() == DocumentKind::cloth) {
+    ask_export();
+    return false;
+  }
   const bool fabric = session_.document().kind() == DocumentKind::fabric;
   const QString path =
       QFileDialog::getSaveFileName(this, tr("Save as"), QString::fromStdString(session_.document().name()),
@@ -104,7 +120,9 @@ void MainWindow::export_to(const QString& path) {
     return;
   }
   if (suffix == QLatin1String("svg")) {
-    write_diagram_svg(file, session_.diagram());
+    const auto& knitting = session_.moment().knitting;
+    write_diagram_svg(
+        file, session_.knitout() && knitting ? needle_diagram(knitting->program) : session_.diagram());
     return;
   }
   if (!session_.fabric()) throw std::invalid_argument("there is no cloth to export yet");
@@ -112,15 +130,26 @@ void MainWindow::export_to(const QString& path) {
     throw std::invalid_argument(
         "the cloth is broken: it is not what the notation knits, and is not exported");
   if (suffix == QLatin1String("json")) {
-    if (!session_.moment().relaxed) throw std::invalid_argument("only cloth at rest is measured");
-    write_json(file, results(assess(session_.moment().relaxed->fabric), *session_.moment().relaxed));
+    const ClothMoment& moment = session_.moment();
+    if (moment.relaxed)
+      write_json(file, results(assess(moment.relaxed->fabric), *moment.relaxed));
+    else if (moment.stage == ClothStage::as_saved)
+      write_json(file, results(assess(*session_.fabric())));
+    else
+      throw std::invalid_argument("only cloth at rest is measured");
     return;
   }
   const auto& moment = session_.moment();
+  State state{*session_.fabric(), {}, {}};
   if (moment.relaxed && moment.options && session_.fabric() == moment.fabric)
-    write_fabric(file, saved_state(*moment.relaxed, *moment.options, 1));
-  else
-    write_fabric(file, *session_.fabric());
+    state = saved_state(*moment.relaxed, *moment.options, 1);
+  // a state is opened again with the notation that it was knitted from
+  const Document& document = session_.document();
+  if (document.kind() != DocumentKind::cloth || document.has_fabric_text()) {
+    state.texts[state_notation] = document.text();
+    state.texts[state_notation_suffix] = document.suffix();
+  }
+  write_fabric(file, state);
 }
 
 void MainWindow::ask_export() {

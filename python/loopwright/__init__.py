@@ -173,15 +173,17 @@ def relax_as_knitted(first: Cloth, *, machine_width_mm: float, take_down_N: floa
 def stretch(source: Source, *, direction: str = "course", to: Sequence[float] = (0.3,),
             load: Sequence[float] | None = None, step: float = 0.02, load_step: float | None = None,
             held_across: bool = False, periodic: bool = False, window: Window | None = None,
-            friction: float | None = None, progress: OnProgress | None = None) -> StretchTest:
+            friction: float | None = None, segments_per_loop: float = 24,
+            progress: OnProgress | None = None) -> StretchTest:
     """Pulls cloth and reads off the forces of its frame. Cloth that is not at rest is brought there first.
 
     direction: 'course', 'wale', 'both' or 'shear'; to: strains to go to, in order, (0.3, 0) loads and unloads; load:
-    forces instead, N/m; step, load_step: the largest steps; held_across: the other size stays as it is.
+    forces instead, N/m; step, load_step: the largest steps; held_across: the other size stays as it is;
+    segments_per_loop: of a programme's cloth (forces need more of them than sizes do, for which `build` takes 12).
     """
     progress = progress and _Stoppable(progress)
     cloth = _cloth_of(source, dict(periodic=periodic, window=window, friction=friction, progress=progress,
-                                   start_from_cell=True))
+                                   segments_per_loop=segments_per_loop, start_from_cell=True))
     return cloth.stretch(direction=direction, to=list(to), load=None if load is None else list(load), step=step,
                          load_step=load_step, held_across=held_across, progress=progress)
 

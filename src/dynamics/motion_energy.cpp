@@ -274,7 +274,8 @@ std::vector<Vec3> YarnMotion::forces() const {
 
 double YarnMotion::course_force(double width) const {
   const std::vector<Vec3> f = forces();
-  double sum = solver_->contact_measures[0];
+  // contact's measure is the frame's width at the start, and its slope goes with that
+  double sum = contact_ ? solver_->contact_measures[0] * contact_->width / width : 0;
   for (std::size_t i = 0; i < f.size(); ++i) sum -= f[i].x * state_.place[i].x / width;
   return sum;
 }

@@ -84,8 +84,8 @@ class YarnMotion {
   // Force of everything elastic and of the bindings on each control point; held ones: what the holder
   // carries, with its sign turned. Contact is not in it.
   std::vector<Vec3> forces() const;
-  // dU/d(width) if all control points were carried along affinely, x -> x (1 + e) about x = 0, divided by
-  // `width`: the force that a frame of that width carries at rest, contact included.
+  // dU/de if all control points were carried along affinely, x -> x (1 + e) about x = 0, divided by `width`:
+  // the force that a frame which is now of that width carries at rest, contact included.
   double course_force(double width) const;
   double contact_core() const;  // 0 without contact
   // How often a sliding binding had to be set anew, because the nearest approach that it followed had ended

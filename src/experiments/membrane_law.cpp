@@ -22,18 +22,17 @@ FitError error_of(const Eigen::VectorXd& difference, const Eigen::VectorXd& forc
   return error;
 }
 
-// The reach at which a function is least: a fine scan, then golden sections round its best place.
+// Where a function is least in a range: a scan, then golden sections round its best place.
 template <typename Function>
-double best_reach(const Function& f) {
-  constexpr int scans = 200;
-  constexpr double step = (most_reach - least_reach) / scans;
-  double best = least_reach, value = f(best);
+double best_place(const Function& f, double lowest, double highest, int scans) {
+  const double step = (highest - lowest) / scans;
+  double best = lowest, value = f(best);
   for (int k = 1; k <= scans; ++k) {
-    const double here = f(least_reach + k * step);
-    if (here < value) value = here, best = least_reach + k * step;
+    const double here = f(lowest + k * step);
+    if (here < value) value = here, best = lowest + k * step;
   }
   constexpr double golden = 0.6180339887498949;
-  double low = std::max(least_reach, best - step), high = std::min(most_reach, best + step);
+  double low = std::max(lowest, best - step), high = std::min(highest, best + step);
   for (int k = 0; k < 60; ++k) {
     const double a = high - golden * (high - low), b = low + golden * (high - low);
     if (f(a) < f(b))
@@ -42,6 +41,11 @@ double best_reach(const Function& f) {
       low = a;
   }
   return (low + high) / 2;
+}
+
+template <typename Function>
+double best_reach(const Function& f) {
+  return best_place(f, least_reach, most_reach, 200);
 }
 
 // A linear least squares problem whose constants from `first_positive` on must not be below 0: those that
@@ -74,6 +78,37 @@ void require_finite(const Eigen::VectorXd& values) {
   if (!values.allFinite()) throw std::invalid_argument("a strain or force to fit is not a finite number");
 }
 
+// Strains and forces of a grid's points. Forces: along the courses, then along the wales.
+struct Grid {
+  Eigen::Index count = 0;
+  Eigen::VectorXd ec, ew, es, force, shear;
+
+  explicit Grid(std::span<const StretchPoint> points)
+      : count(static_cast<Eigen::Index>(points.size())),
+        ec(count),
+        ew(count),
+        es(count),
+        force(2 * count),
+        shear(count) {
+    if (count < 8) throw std::invalid_argument("a membrane law needs at least eight points of a grid");
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const StretchPoint& p = points[static_cast<std::size_t>(k)];
+      ec(k) = p.course_strain, ew(k) = p.wale_strain, es(k) = p.shear;
+      force(k) = p.course_force, force(count + k) = p.wale_force, shear(k) = p.shear_force;
+    }
+    for (const Eigen::VectorXd* values : {&ec, &ew, &es, &force, &shear}) require_finite(*values);
+  }
+  // What Cxx, Cyy and Cxy are multiplied by, and room for more.
+  Eigen::MatrixXd linear_columns(Eigen::Index all) const {
+    Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(2 * count, all);
+    columns.col(0).head(count) = ec;
+    columns.col(1).tail(count) = ew;
+    columns.col(2).head(count) = ew;
+    columns.col(2).tail(count) = ec;
+    return columns;
+  }
+};
+
 }  // namespace
 
 double PullLaw::operator()(double strain) const { return Y * strain + beta * locking(alpha * strain); }
@@ -104,22 +139,10 @@ PullLaw fit_pull(std::span<const double> strain, std::span<const double> force) 
 }
 
 MembraneLaw fit_membrane(std::span<const StretchPoint> points) {
-  const auto count = static_cast<Eigen::Index>(points.size());
-  if (count < 8) throw std::invalid_argument("a membrane law needs at least eight points of a grid");
-  Eigen::VectorXd ec(count), ew(count), es(count), force(2 * count), shear(count);
-  for (Eigen::Index k = 0; k < count; ++k) {
-    const StretchPoint& p = points[static_cast<std::size_t>(k)];
-    ec(k) = p.course_strain, ew(k) = p.wale_strain, es(k) = p.shear;
-    force(k) = p.course_force, force(count + k) = p.wale_force, shear(k) = p.shear_force;
-  }
-  for (const Eigen::VectorXd* values : {&ec, &ew, &es, &force, &shear}) require_finite(*values);
-
-  // Constants in the order Cxx, Cyy, Cxy, beta_x, beta_y; rows: course forces, then wale forces.
-  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(2 * count, 5);
-  columns.col(0).head(count) = ec;
-  columns.col(1).tail(count) = ew;
-  columns.col(2).head(count) = ew;
-  columns.col(2).tail(count) = ec;
+  const Grid grid(points);
+  const auto& [count, ec, ew, es, force, shear] = grid;
+  // Constants in the order Cxx, Cyy, Cxy, beta_x, beta_y.
+  Eigen::MatrixXd columns = grid.linear_columns(5);
   double reach_x = 0.5, reach_y = 0.5;
   const auto constants = [&](double x, double y) {
     columns.col(3).head(count) = locking_column(ec, x);
@@ -146,6 +169,36 @@ MembraneLaw fit_membrane(std::span<const StretchPoint> points) {
   law.course = error_of(difference.head(count), force.head(count));
   law.wale = error_of(difference.tail(count), force.tail(count));
   law.shear = error_of(law.G * es - shear, shear);
+  return law;
+}
+
+SharedLockingLaw fit_shared_locking(std::span<const StretchPoint> points) {
+  const Grid grid(points);
+  const auto& [count, ec, ew, es, force, shear] = grid;
+  Eigen::MatrixXd columns = grid.linear_columns(4);
+  const auto constants = [&](double r, double reach) {
+    const Eigen::VectorXd locks = locking_column(ec + r * ew, reach);
+    columns.col(3).head(count) = locks;
+    columns.col(3).tail(count) = r * locks;
+    return solved(columns, force, 3);
+  };
+  const auto miss = [&](double r, double reach) {
+    const Eigen::VectorXd c = constants(r, reach);
+    return (columns * c - force).norm();
+  };
+  const auto reach_of = [&](double r) {
+    return best_place([&](double reach) { return miss(r, reach); }, least_reach, most_reach, 40);
+  };
+  const double r =
+      std::exp(best_place([&](double log_r) { return miss(std::exp(log_r), reach_of(std::exp(log_r))); },
+                          std::log(0.05), std::log(20.0), 40));
+  const double reach = reach_of(r);
+  const Eigen::VectorXd c = constants(r, reach);
+  const Eigen::VectorXd difference = columns * c - force;
+  SharedLockingLaw law{c(0), c(1), c(2), c(3), 0, r, {}, {}};
+  law.alpha = reach / std::max((ec + r * ew).maxCoeff(), 1e-12);
+  law.course = error_of(difference.head(count), force.head(count));
+  law.wale = error_of(difference.tail(count), force.tail(count));
   return law;
 }
 

@@ -8,6 +8,15 @@
 //
 //   sigma_course = Cxx e_course + Cxy e_wale + beta_x g(alpha_x e_course)
 //   sigma_wale   = Cxy e_course + Cyy e_wale + beta_y g(alpha_y e_wale),   sigma_shear = G gamma
+//
+// In a knit width and height are made of the same yarn, so that it locks when both together have used it up.
+// With one locking for both directions, e = e_course + r e_wale:
+//
+//   sigma_course = Cxx e_course + Cxy e_wale + beta g(alpha e)
+//   sigma_wale   = Cxy e_course + Cyy e_wale + r beta g(alpha e)
+//
+// r: how much width a loop gives up for a share of its height (that the mean of width and height is kept is
+// how Poincloux, Adda-Bedia and Lechenault describe stockinette, Physical Review X 8, 021075, 2018).
 #pragma once
 #include <span>
 
@@ -40,5 +49,14 @@ struct MembraneLaw {
 
 // The same over a grid of strains. Throws as fit_pull, for fewer than eight points.
 MembraneLaw fit_membrane(std::span<const StretchPoint> points);
+
+struct SharedLockingLaw {
+  double Cxx = 0, Cyy = 0, Cxy = 0;   // N/m
+  double beta = 0, alpha = 0, r = 1;  // N/m, 1, 1
+  FitError course, wale;
+};
+
+// Least squares over a grid of strains, beta not below 0, r from 0.05 to 20. Throws as fit_membrane.
+SharedLockingLaw fit_shared_locking(std::span<const StretchPoint> points);
 
 }  // namespace loopwright

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/stop.hpp"
+
 namespace loopwright {
 namespace {
 
@@ -126,6 +128,7 @@ YarnCurves assemble_runs(const YarnGraph& graph, const GeometryOptions& options,
     const PlacedSinker& first = piece.sinkers[y][static_cast<std::size_t>(run.first)];
     curve.points.push_back(first.points[first.middle]);
     for (int k = run.first; k < run.first + run.count; ++k) {
+      stop_if_told();
       const LoopId id = graph.yarns[y].loops[static_cast<std::size_t>(k)];
       append_loop(graph.loop(id), id, piece.sinkers[y][static_cast<std::size_t>(k)],
                   piece.loops[id.position()], piece.sinkers[y][static_cast<std::size_t>(k) + 1], options,

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/stop.hpp"
 #include "geometry/centreline.hpp"
 #include "topology/courses.hpp"
 
@@ -57,6 +58,7 @@ void approach_samples(const Fabric& fabric, const std::vector<Vec3>& samples, Fa
   std::vector<Vec3> change(n);
   std::vector<double> weight(n);
   for (int sweep = 0; sweep < sweeps; ++sweep) {
+    stop_if_told();
     std::fill(change.begin(), change.end(), Vec3{});
     std::fill(weight.begin(), weight.end(), 0);
     for (std::size_t k = 0; k < samples.size(); ++k) {
@@ -180,6 +182,7 @@ Fabric fit_fabric(const YarnCurves& curves, const YarnGraph& graph, const Geomet
   const double wanted = options.loop_length / fit.segments_per_loop;
   const std::vector<int> courses = course_numbers(graph);
   for (const CurveYarn& curve : curves.yarns) {
+    stop_if_told();
     FabricYarn yarn;
     yarn.yarn = curve.yarn;
     yarn.carrier = curve.carrier;

@@ -6,6 +6,8 @@
 #include <span>
 #include <unordered_map>
 
+#include "base/stop.hpp"
+
 namespace loopwright {
 namespace {
 
@@ -266,6 +268,7 @@ InterlacingCheck check_interlacings(const Fabric& fabric) {
       parent->second.children.push_back(interlacing.child);
   const std::vector<Vec3> directions = wale_directions(fabric, windows);
   for (std::size_t k = 0; k < fabric.interlacings.size(); ++k) {
+    stop_if_told();
     const PlacedInterlacing& interlacing = fabric.interlacings[k];
     const auto parent = windows.find(interlacing.parent), child = windows.find(interlacing.child);
     bool intact = parent != windows.end() && child != windows.end();

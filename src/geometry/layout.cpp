@@ -8,6 +8,7 @@
 #include <numeric>
 #include <set>
 
+#include "base/stop.hpp"
 #include "geometry/held_events.hpp"
 
 namespace loopwright {
@@ -367,7 +368,9 @@ Layout lay_out(const YarnGraph& graph, const GeometryOptions& options) {
   if (graph.loops.empty()) return layout;
   Nodes nodes = binding_nodes(graph);
   const HeldEvents events = held_events(graph);
+  stop_if_told();
   const Eigen::VectorXd y = levels(graph, options, nodes, events);
+  stop_if_told();
   bool front = false, back = false;
   for (const Loop& loop : graph.loops) (is_front(loop.bed) ? front : back) = true;
   layout.two_beds = front && back;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/stop.hpp"
 #include "geometry/held_events.hpp"
 
 namespace loopwright {
@@ -364,8 +365,10 @@ void place_sinkers(const YarnGraph& graph, const GeometryOptions& options,
     const GraphYarn& yarn = graph.yarns[y];
     if (yarn.loops.empty()) continue;
     sinkers[y].push_back(placer.end(yarn.loops.front(), true));
-    for (std::size_t k = 0; k + 1 < yarn.loops.size(); ++k)
+    for (std::size_t k = 0; k + 1 < yarn.loops.size(); ++k) {
+      stop_if_told();
       sinkers[y].push_back(placer.between(static_cast<int>(y), static_cast<int>(k)));
+    }
     sinkers[y].push_back(placer.end(yarn.loops.back(), false));
   }
   piece.sinkers = std::move(sinkers);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/stop.hpp"
 #include "geometry/assemble.hpp"
 #include "geometry/loop_signs.hpp"
 #include "geometry/sinkers.hpp"
@@ -274,7 +275,10 @@ PlacedPiece place_type_points(const YarnGraph& graph, const GeometryOptions& opt
   const std::vector<LoopSigns> signs = loop_signs(graph, flat, options.shape_radius());
   const LoopPlacer placer(graph, options, piece.layout, signs);
   piece.loops.reserve(graph.loops.size());
-  for (std::size_t i = 0; i < graph.loops.size(); ++i) piece.loops.push_back(placer.place(LoopId(i)));
+  for (std::size_t i = 0; i < graph.loops.size(); ++i) {
+    stop_if_told();
+    piece.loops.push_back(placer.place(LoopId(i)));
+  }
   place_sinkers(graph, options, signs, flat, piece);
   return piece;
 }

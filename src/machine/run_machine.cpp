@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/stop.hpp"
 #include "machine/machine.hpp"
 
 namespace loopwright {
@@ -27,6 +28,7 @@ void Machine::make_room() {
 KnittingRecord Machine::run() {
   make_room();
   for (const Instruction& instruction : program_.instructions) {
+    stop_if_told();
     const bool has_yarn = !instruction.carriers.empty();
     switch (instruction.op) {
       case Op::in:

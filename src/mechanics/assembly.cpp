@@ -174,13 +174,19 @@ void Assembly::build_pattern(BlockMatrix& matrix) const {
     columns[static_cast<std::size_t>(fill[static_cast<std::size_t>(i)]++)] = j;
   });
   matrix.row_start.assign(nodes + 1, 0);
-  matrix.column.clear();
+  std::size_t kept = 0;
   for (std::size_t i = 0; i < nodes; ++i) {
     const auto begin = columns.begin() + start[i], end = columns.begin() + start[i + 1];
     std::sort(begin, end);
-    matrix.column.insert(matrix.column.end(), begin, std::unique(begin, end));
-    matrix.row_start[i + 1] = static_cast<std::int32_t>(matrix.column.size());
+    const auto last = std::unique(begin, end);
+    // Behind the rows before it: they have left room.
+    const auto to = columns.begin() + static_cast<std::ptrdiff_t>(kept);
+    if (to != begin) std::copy(begin, last, to);
+    kept += static_cast<std::size_t>(last - begin);
+    matrix.row_start[i + 1] = static_cast<std::int32_t>(kept);
   }
+  matrix.column.assign(columns.begin(), columns.begin() + static_cast<std::ptrdiff_t>(kept));
+  std::vector<std::int32_t>().swap(columns);
   matrix.block.assign(matrix.column.size(), Block{});
   matrix.border.assign(nodes, Block{});
   matrix.corner = {};
@@ -296,17 +302,25 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
       SegmentDofs x;
       for (std::size_t k = 0; k < 4; ++k)
         for (std::size_t d = 0; d < 3; ++d) x[3 * k + d] = extended_[f + k][static_cast<int>(d)];
-      LocalTerm<12> stretch =
-          Stretch{yarn.stretch_stiffness, model_.natural_length[static_cast<std::size_t>(e)]}.evaluate(x);
-      const LocalTerm<12> bend = Bend{yarn.bend_stiffness, yarn.rest_length}.evaluate(x);
+      const Stretch along{yarn.stretch_stiffness, model_.natural_length[static_cast<std::size_t>(e)]};
+      const Bend across{yarn.bend_stiffness, yarn.rest_length};
+      const Plates flat{model_.plates.stiffness, model_.plates.low, model_.plates.high, yarn.rest_length,
+                        model_.samples};
+      const bool pressed = plates && flat.touch(places_.boxes[static_cast<std::size_t>(e)]);
+      if (!gradient) {
+        sums.energy.stretch += along.energy(x);
+        sums.energy.bend += across.energy(x);
+        if (pressed) sums.energy.plates += flat.evaluate(x, model_.weights).energy;
+        continue;
+      }
+      LocalTerm<12> stretch = along.evaluate(x);
+      const LocalTerm<12> bend = across.evaluate(x);
       if (whole) {
         sums.energy.stretch += stretch.energy;
         sums.energy.bend += bend.energy;
       }
-      if (plates) {
-        const Plates element{model_.plates.stiffness, model_.plates.low, model_.plates.high, yarn.rest_length,
-                             model_.samples};
-        const LocalTerm<12> pushed = element.evaluate(x, model_.weights);
+      if (pressed) {
+        const LocalTerm<12> pushed = flat.evaluate(x, model_.weights);
         if (whole) sums.energy.plates += pushed.energy;
         if (pushed.energy > 0)
           for (std::size_t k = 0; k < 12; ++k) {
@@ -314,13 +328,12 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
             for (std::size_t l = 0; l < 12; ++l) stretch.hessian[k][l] += pushed.hessian[k][l];
           }
       }
-      if (gradient)
-        for (std::size_t k = 0; k < 4; ++k)
-          add_gradient(f + k,
-                       {stretch.gradient[3 * k] + bend.gradient[3 * k],
-                        stretch.gradient[3 * k + 1] + bend.gradient[3 * k + 1],
-                        stretch.gradient[3 * k + 2] + bend.gradient[3 * k + 2]},
-                       whole);
+      for (std::size_t k = 0; k < 4; ++k)
+        add_gradient(f + k,
+                     {stretch.gradient[3 * k] + bend.gradient[3 * k],
+                      stretch.gradient[3 * k + 1] + bend.gradient[3 * k + 1],
+                      stretch.gradient[3 * k + 2] + bend.gradient[3 * k + 2]},
+                     whole);
       if (matrix)
         for (std::size_t k = 0; k < 4; ++k)
           for (std::size_t l = 0; l < 4; ++l) {
@@ -349,6 +362,7 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
                           {&places_.x[b0], &places_.y[b0], &places_.z[b0]}};
       const Vec3 image = state.lattice(pair.m, pair.n);
       in.image = {image.x, image.y, image.z};
+      in.box_b = &places_.boxes[static_cast<std::size_t>(pair.b)];
       in.count = model_.samples;
       in.weight = ya.rest_length * yb.rest_length / (model_.samples * model_.samples);
       if (pair.same_yarn) {

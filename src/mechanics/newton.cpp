@@ -14,6 +14,7 @@ constexpr double least_loose = 0.6;  // how far past contact the pair list reach
 constexpr double most_loose = 2.4;
 constexpr double enough_decrease = 1e-4;  // Armijo's constant
 constexpr int most_cuts = 40;
+constexpr double least_first_shift = 1e-5;
 
 double largest_force(const Unknowns& g) {
   double largest = 0;
@@ -82,12 +83,16 @@ NewtonResult newton(const YarnModel& model, YarnState& state, const NewtonOption
     if (options.on_iteration && !options.on_iteration(result.iterations, result.residual))
       result.stopped = true;
     if (result.converged || result.stopped || result.iterations >= options.most_iterations) break;
+    // A start near rest needs no large shift, and would take steps to be rid of it.
+    if (result.iterations == 0) shift = std::min(shift, std::max(result.residual, least_first_shift));
 
     assembly.metric(hessian);
     hessian.measure_metric = {1, 1, 1};
     const double accuracy = std::clamp(0.3 * result.residual, 1e-3, 0.05);
     const StepSolver::Report solve = solver.solve(hessian, state, gradient, accuracy, shift, step);
     if (!solve.solved) break;
+    std::vector<Block>().swap(
+        hessian.block);  // most of what a large piece holds, and not needed until the next
 
     const double energy = result.energy.total(), slope = dot(gradient, step);
     TakenStep taken = take_step(model, assembly, state, step, energy, slope, range);

@@ -10,7 +10,8 @@
 namespace loopwright {
 namespace {
 
-// Two sticks of 0.18 d on yarn bent to a radius of 0.5 d stray by 2 x 0.18^2 / (8 x 0.5) d from it.
+// Two sticks of 0.18 d on yarn bent to a radius of 0.5 d stray by 2 x 0.18^2 / (8 x 0.5) d from it; sticks
+// are 0.12 d long by default.
 constexpr double bent_away = 0.016;
 constexpr double smallest_ratio = 0.05;  // of motion to distance: less than this never cuts a step
 
@@ -81,19 +82,52 @@ struct Stick {
   Vec3 half, turn;
 };
 
-// Half-vectors of all samples' sticks: to the middle between neighbouring samples of a segment, so that
-// sticks tile the yarn as it lies, however stretched it is.
-std::vector<Stick> sticks(const SamplePlaces& from, const SamplePlaces& to, int samples) {
+// The stick of sample k: to the middle between its neighbours in the segment, so that sticks tile the yarn as
+// it lies, however stretched it is. n: samples per segment.
+Stick stick_of(const SamplePlaces& from, const SamplePlaces& to, std::size_t k, std::size_t n) {
+  const auto place = [](const SamplePlaces& p, std::size_t at) { return Vec3{p.x[at], p.y[at], p.z[at]}; };
+  const std::size_t i = k % n, before = i > 0 ? k - 1 : k, after = i + 1 < n ? k + 1 : k;
+  const double share = 0.5 / static_cast<double>(after - before);
+  const Vec3 half = share * (place(from, after) - place(from, before));
+  return {half, share * (place(to, after) - place(to, before)) - half};
+}
+
+// What bounds the motion of a segment's samples: all move by `mean` and at most `spread` more.
+struct SegmentMotion {
+  Vec3 mean;
+  double spread = 0, half = 0, turn = 0;  // half, turn: the largest of its sticks
+};
+
+std::vector<SegmentMotion> segment_motions(const SamplePlaces& from, const SamplePlaces& to, int samples) {
   const auto n = static_cast<std::size_t>(samples);
-  const auto place = [](const SamplePlaces& p, std::size_t k) { return Vec3{p.x[k], p.y[k], p.z[k]}; };
-  std::vector<Stick> all(from.x.size());
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    const std::size_t i = k % n, before = i > 0 ? k - 1 : k, after = i + 1 < n ? k + 1 : k;
-    const double share = 0.5 / static_cast<double>(after - before);
-    all[k].half = share * (place(from, after) - place(from, before));
-    all[k].turn = share * (place(to, after) - place(to, before)) - all[k].half;
+  std::vector<SegmentMotion> all(from.boxes.size());
+  for (std::size_t e = 0; e < all.size(); ++e) {
+    SegmentMotion& m = all[e];
+    const auto motion = [&](std::size_t k) {
+      return Vec3{to.x[k] - from.x[k], to.y[k] - from.y[k], to.z[k] - from.z[k]};
+    };
+    for (std::size_t k = e * n; k < (e + 1) * n; ++k) {
+      m.mean += motion(k) / static_cast<double>(n);
+      const Stick stick = stick_of(from, to, k, n);
+      m.half = std::max(m.half, squared_norm(stick.half));
+      m.turn = std::max(m.turn, squared_norm(stick.turn));
+    }
+    m.half = std::sqrt(m.half);
+    m.turn = std::sqrt(m.turn);
+    for (std::size_t k = e * n; k < (e + 1) * n; ++k) m.spread = std::max(m.spread, norm(motion(k) - m.mean));
   }
   return all;
+}
+
+// Squared distance of a box, moved by -image, from another.
+double squared_distance(const SampleBox& a, const Vec3& image, const SampleBox& b) {
+  double sum = 0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double shift = image[static_cast<int>(c)],
+                 apart = std::max({b.low[c] - (a.high[c] - shift), (a.low[c] - shift) - b.high[c], 0.0});
+    sum += apart * apart;
+  }
+  return sum;
 }
 
 // Distance of two sticks with centres apart by d: points d + s a - t b, s and t in [-1, 1]. Alternating
@@ -120,7 +154,7 @@ SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnS
   expand(model, target, extended);
   place_samples(model, extended, to);
 
-  const std::vector<Stick> stick = sticks(from, to, model.samples);
+  const std::vector<SegmentMotion> motions = segment_motions(from, to, model.samples);
 
   const auto& pairs = assembly.pairs();
   constexpr int pairs_per_chunk = 4096;
@@ -142,20 +176,27 @@ SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnS
       const auto i0 = static_cast<std::size_t>(pair.a * model.samples),
                  j0 = static_cast<std::size_t>(pair.b * model.samples);
       const auto count = static_cast<std::size_t>(model.samples);
-      double longest[2] = {0, 0}, most_turn[2] = {0, 0};
-      for (std::size_t i = 0; i < count; ++i)
-        for (const std::size_t which : {std::size_t{0}, std::size_t{1}}) {
-          const Stick& s = stick[(which == 0 ? i0 : j0) + i];
-          longest[which] = std::max(longest[which], squared_norm(s.half));
-          most_turn[which] = std::max(most_turn[which], squared_norm(s.turn));
-        }
-      const double halves = std::sqrt(longest[0]) + std::sqrt(longest[1]);
-      const double turns = std::sqrt(most_turn[0]) + std::sqrt(most_turn[1]);
+      const SegmentMotion &one_motion = motions[static_cast<std::size_t>(pair.a)],
+                          &other_motion = motions[static_cast<std::size_t>(pair.b)];
+      const SampleBox& other_box = from.boxes[static_cast<std::size_t>(pair.b)];
+      const double halves = one_motion.half + other_motion.half, turns = one_motion.turn + other_motion.turn;
+      // So far apart, and moving so little against each other, that sticks would not change the verdict.
+      const auto harmless = [&](double distance2, double motion2) {
+        return distance2 > 9 * halves * halves &&
+               2 * (motion2 + turns * turns) <= 0.44 * w.ratio2 * distance2;
+      };
+      const double most_motion =
+          norm(one_motion.mean - moved_image - other_motion.mean) + one_motion.spread + other_motion.spread;
+      if (harmless(squared_distance(from.boxes[static_cast<std::size_t>(pair.a)], image, other_box),
+                   most_motion * most_motion))
+        continue;
       for (std::size_t i = 0; i < count; ++i) {
         const double x = from.x[i0 + i] - image.x, y = from.y[i0 + i] - image.y, z = from.z[i0 + i] - image.z;
         const double sx = to.x[i0 + i] - from.x[i0 + i] - moved_image.x,
                      sy = to.y[i0 + i] - from.y[i0 + i] - moved_image.y,
                      sz = to.z[i0 + i] - from.z[i0 + i] - moved_image.z;
+        const double sample_motion = norm(Vec3{sx, sy, sz} - other_motion.mean) + other_motion.spread;
+        if (harmless(squared_distance(x, y, z, other_box), sample_motion * sample_motion)) continue;
         for (std::size_t j = 0; j < count; ++j) {
           if (pair.same_yarn && std::abs(pair.arc_offset + (static_cast<double>(j) - static_cast<double>(i)) *
                                                                spacing) < model.excluded * yarn.diameter)
@@ -165,9 +206,8 @@ SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnS
           const double rx = sx - (to.x[j0 + j] - from.x[j0 + j]), ry = sy - (to.y[j0 + j] - from.y[j0 + j]),
                        rz = sz - (to.z[j0 + j] - from.z[j0 + j]);
           const double r2 = rx * rx + ry * ry + rz * rz;
-          // Far enough apart that sticks would not change the verdict.
-          if (d2 > 9 * halves * halves && 2 * (r2 + turns * turns) <= 0.44 * w.ratio2 * d2) continue;
-          const Stick &one = stick[i0 + i], &other = stick[j0 + j];
+          if (harmless(d2, r2)) continue;
+          const Stick one = stick_of(from, to, i0 + i, count), other = stick_of(from, to, j0 + j, count);
           const double motion = std::sqrt(r2) + norm(one.turn) + norm(other.turn);
           const double gap2 = stick_distance2({dx, dy, dz}, one.half, other.half);
           w.gap2 = std::min(w.gap2, gap2);

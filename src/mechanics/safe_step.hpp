@@ -2,7 +2,7 @@
 //
 // A straight motion of all points from x to x + s (0 to 1) cannot carry yarn a through yarn b while, for
 // every pair of their points, the relative motion stays below their distance. Checked for every pair of
-// segments within the list's range, with the yarn as straight sticks round the contact samples (0.18 d apart
+// segments within the list's range, with the yarn as straight sticks round the contact samples (0.12 d apart
 // at rest length; sticks tile the yarn as it lies, so thin and stretched yarn is seen too); all other pairs
 // are farther apart than the range, so that motion beyond an affine map (which moves no yarn through another)
 // is capped by the range.

@@ -90,7 +90,7 @@ struct YarnState {
 
 struct ModelOptions {
   YarnMaterial material;
-  double sample_spacing = 0.18;   // wanted distance of contact samples along a yarn, in d
+  double sample_spacing = 0.12;   // wanted distance of contact samples along a yarn, in d
   std::vector<Vec3> point_loads;  // as in YarnModel: none, or one for every control point of every yarn
   FreeMeasures free;
   FlatPlates plates;

@@ -1,11 +1,9 @@
-// The needle diagram of a programme: its instructions, pass by pass.
+#include "notation/program_diagram.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
-
-#include "notation/needle_diagram.hpp"
-#include "notation/program_passes.hpp"
 
 namespace loopwright {
 namespace {
@@ -55,36 +53,43 @@ DiagramPass pass_of(const Program& program, const ProgramPass& run, int first_ne
 
 }  // namespace
 
-NeedleDiagram needle_diagram(const Program& program, const DiagramOptions& options,
-                             std::size_t* passes_in_all) {
-  NeedleDiagram diagram;
-  diagram.name = program.settings.name;
+ProgramDiagram::ProgramDiagram(const Program& program, std::size_t first_pass, std::size_t most_passes)
+    : program_(program), runs_(passes_of(program)) {
+  passes_in_all_ = runs_.size();
+  runs_.erase(runs_.begin(), runs_.begin() + static_cast<std::ptrdiff_t>(std::min(first_pass, runs_.size())));
+  if (runs_.size() > most_passes) runs_.resize(most_passes);
+  frame_.name = program.settings.name;
   for (std::size_t i = 0; i < program.carriers.size(); ++i)
-    diagram.yarns.push_back({program.carriers[i], i < program.yarns.size() ? program.yarns[i].colour : ""});
-  std::vector<ProgramPass> runs = passes_of(program);
-  if (passes_in_all) *passes_in_all = runs.size();
-  runs.erase(runs.begin(),
-             runs.begin() + static_cast<std::ptrdiff_t>(std::min(options.first_pass, runs.size())));
-  if (runs.size() > options.most_passes) runs.resize(options.most_passes);
+    frame_.yarns.push_back({program.carriers[i], i < program.yarns.size() ? program.yarns[i].colour : ""});
   int first = std::numeric_limits<int>::max(), last = std::numeric_limits<int>::min();
-  for (const ProgramPass& run : runs) {
+  for (const ProgramPass& run : runs_) {
     for (std::size_t i = run.begin; i < run.end; ++i) {
       const Instruction& each = program.instructions[i];
       if (each.op < Op::knit) continue;
       const bool two = each.op == Op::xfer || each.op == Op::split;
       first = std::min({first, each.needle.index, two ? each.target.index : each.needle.index});
       last = std::max({last, each.needle.index, two ? each.target.index : each.needle.index});
-      diagram.rear_bed = diagram.rear_bed || two || !is_front(each.needle.bed);
+      frame_.rear_bed = frame_.rear_bed || two || !is_front(each.needle.bed);
     }
   }
-  if (runs.empty()) return diagram;
-  diagram.first_needle = first;
-  diagram.wales = last - first + 1;
-  if (static_cast<std::size_t>(diagram.wales) * runs.size() > most_diagram_needles)
+  if (runs_.empty()) return;
+  frame_.first_needle = first;
+  frame_.wales = last - first + 1;
+  frame_.courses = runs_.back().course;
+}
+
+DiagramPass ProgramDiagram::pass(std::size_t k) const {
+  return pass_of(program_, runs_[k], frame_.first_needle, frame_.wales);
+}
+
+NeedleDiagram needle_diagram(const Program& program, const DiagramOptions& options,
+                             std::size_t* passes_in_all) {
+  const ProgramDiagram lines(program, options.first_pass, options.most_passes);
+  if (passes_in_all) *passes_in_all = lines.passes_in_all();
+  NeedleDiagram diagram = lines.frame();
+  if (static_cast<std::size_t>(diagram.wales) * lines.size() > most_diagram_needles)
     throw std::invalid_argument("the diagram is too large; ask for fewer passes");
-  diagram.courses = runs.back().course;
-  for (const ProgramPass& run : runs)
-    diagram.passes.push_back(pass_of(program, run, diagram.first_needle, diagram.wales));
+  for (std::size_t k = 0; k < lines.size(); ++k) diagram.passes.push_back(lines.pass(k));
   return diagram;
 }
 

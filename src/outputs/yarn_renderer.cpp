@@ -104,6 +104,7 @@ void YarnRenderer::upload(const YarnScene& scene) {
   glBindVertexArray(0);
   if (glGetError() == GL_OUT_OF_MEMORY)
     throw std::runtime_error("the scene does not fit into graphics memory");
+  shown_.reset();
   index_count_ = static_cast<int>(scene.indices.size());
   hair_index_count_ = static_cast<int>(scene.hair_indices.size());
   copies_ = static_cast<int>(scene.offsets.size());
@@ -164,7 +165,12 @@ void YarnRenderer::draw_shadow_map(const Light& light) {
 
 void YarnRenderer::draw_yarns() {
   glBindVertexArray(vertex_array_);
-  glDrawElementsInstanced(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr, copies_);
+  if (!shown_)
+    glDrawElementsInstanced(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr, copies_);
+  else
+    for (const Run& run : *shown_)
+      glDrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(run.count), GL_UNSIGNED_INT,
+                              at_offset(run.first * sizeof(std::uint32_t)), copies_);
   glBindVertexArray(0);
 }
 
@@ -259,7 +265,7 @@ void YarnRenderer::draw(const Camera& camera, const DrawStyle& style, int width,
     set(yarn_program_, "twist", static_cast<float>(look_.twist));
     draw_yarns();
     if (shadows && style.table && !style.transparent) draw_table(local, style, light, view_projection);
-    if (hair_index_count_ > 0) {
+    if (hair_index_count_ > 0 && !shown_) {
       set_view(hair_program_, local, light, view_projection, shadows);
       draw_hairs();
     }

@@ -3,6 +3,9 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "outputs/camera.hpp"
 #include "outputs/yarn_scene.hpp"
@@ -28,6 +31,13 @@ class YarnRenderer {
   // Copies a scene to the GPU in place of the one before.
   void upload(const YarnScene& scene);
 
+  // Draws only these triangles of the uploaded scene: first index and count of indices of each run. Hairs are
+  // left out then. Nothing: all of them again, as after upload().
+  struct Run {
+    std::uint32_t first = 0, count = 0;
+  };
+  void show_only(std::optional<std::vector<Run>> runs) { shown_ = std::move(runs); }
+
   // Clears and draws a viewport of `width` x `height` pixels in the bound framebuffer, which must have a
   // depth buffer. The camera is in the fabric's coordinates. Leaves depth test, face culling and blending
   // off.
@@ -49,6 +59,7 @@ class YarnRenderer {
            offsets_ = 0;
   unsigned shadow_framebuffer_ = 0, shadow_texture_ = 0;
   int shadow_size_ = 0, largest_texture_ = 2048;
+  std::optional<std::vector<Run>> shown_;
   int index_count_ = 0, hair_index_count_ = 0, copies_ = 0;
   Vec3 centre_;
   Bounds bounds_;

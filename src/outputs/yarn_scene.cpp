@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "base/parallel.hpp"
+#include "base/stop.hpp"
 #include "outputs/fuzz.hpp"
 #include "outputs/sky.hpp"
 #include "outputs/tube_mesh.hpp"
@@ -104,6 +105,7 @@ class TubeBuilder {
 
     double start = 0;
     const std::size_t first = scene_.vertices.size();
+    const auto first_index = static_cast<std::uint32_t>(scene_.indices.size());
     first_vertex_.clear();
     for (std::size_t k = 0; k < rings.size(); ++k) {
       if (!colours.empty()) {
@@ -114,6 +116,7 @@ class TubeBuilder {
       const double arc = rings[k].arc * stretch - start;
       add_ring(rings[k], arc);
       if (k > 0) join_last_rings();
+      if (k % 256 == 0) stop_if_told();
       if (!yarn.periodic && arc > repeat_ && k + 1 < rings.size()) {
         start += repeat_;
         add_ring(rings[k], arc - repeat_);
@@ -124,6 +127,8 @@ class TubeBuilder {
       add_cap(rings.front(), -rings.front().tangent);
       add_cap(rings.back(), rings.back().tangent);
     }
+    scene_.parts.push_back({first_index, static_cast<std::uint32_t>(6 * sides_ * detail.per_segment),
+                            static_cast<std::uint32_t>(scene_.indices.size()) - first_index});
     if (scene_.look.occlusion) shade_crevices(sky_, scene_, first);
     const double thickness = yarn.diameter * pixels_per_diameter_;
     if (scene_.look.fuzz > 0 && thickness >= 14) add_hairs(rings, y, std::min(1.0, thickness / 28));

@@ -30,9 +30,16 @@ struct SceneVertex {
   std::array<std::uint8_t, 4> colour;  // sRGB, and the open share of the sky, times 255
 };
 
+// A yarn's triangles in YarnScene::indices: those of segment k of its spline start at first + k *
+// per_segment; after the last come its two ends.
+struct YarnPart {
+  std::uint32_t first = 0, per_segment = 0, count = 0;
+};
+
 struct YarnScene {
   std::vector<SceneVertex> vertices;
   std::vector<std::uint32_t> indices;  // triangles, counter-clockwise from outside
+  std::vector<YarnPart> parts;         // by yarn
   // pairs of vertices, a line each; along[0] runs from 0 at a hair's root to 1 at its tip
   std::vector<std::uint32_t> hair_indices;
   // the scene is drawn once at each of these: (0, 0, 0), or the periodic repeats

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/stop.hpp"
 #include "topology/needle_replay.hpp"
 
 namespace loopwright {
@@ -134,6 +135,7 @@ void trace_floats(const Program& program, const KnittingRecord& record, YarnGrap
 
   FloatTracer tracer(program, record, graph);
   for (const StepOf& at : steps) {
+    stop_if_told();
     const std::vector<YarnStep>& yarn_steps = record.yarns[at.yarn.position()].steps;
     tracer.trace_step(at.yarn, yarn_steps[at.step], at.step > 0 ? &yarn_steps[at.step - 1] : nullptr);
   }

@@ -223,34 +223,69 @@ RelaxOptions acrylic_yarn(const Acrylic& a, double friction) {
   return options;
 }
 
+// A cell that bears a force along one direction, N/m of its rest size, in steps of 10 N/m; across it is free
+// or as wide as at rest, as cloth is between its clamps.
+class Specimen {
+ public:
+  Specimen(const RelaxResult& rest, const RelaxOptions& options, bool course, bool held_across)
+      : at_(rest),
+        options_(options),
+        course_(course),
+        rest_size_(course ? rest.fabric.width : rest.fabric.height) {
+    const double d = rest.fabric.diameter_mm * 1e-3;
+    unit_ = (course ? rest.fabric.height : rest.fabric.width) * d * d * d /
+            options.model.material.reference_bend_N_m2;
+    options_.grow_in = false;
+    options_.model.free = {course || !held_across, !course || !held_across, false};
+  }
+  // The strain there, from the rest size.
+  double bear(double force) {
+    const int steps = std::max(1, static_cast<int>(std::ceil(std::abs(force - force_) / 10)));
+    const double from = force_;
+    for (int k = 1; k <= steps; ++k) {
+      force_ = from + (force - from) * k / steps;
+      options_.model.load = {course_ ? force_ * unit_ : 0, course_ ? 0 : force_ * unit_, 0};
+      options_.history = at_.history;
+      at_ = relax(at_.fabric, options_);
+      unsettled_ += !at_.converged;
+    }
+    return (course_ ? at_.fabric.width : at_.fabric.height) / rest_size_ - 1;
+  }
+  int unsettled() const { return unsettled_; }
+
+ private:
+  RelaxResult at_;
+  RelaxOptions options_;
+  bool course_;
+  double rest_size_, unit_ = 0, force_ = 0;
+  int unsettled_ = 0;
+};
+
+// First pull: from rest. Second pull, as measured: pulled to 200 N/m once, let go, and pulled again; strain
+// from where the second pull begins. Clamped specimens lie between free and held across.
 void print_acrylic() {
-  std::printf("acrylic fabrics: strain at 0.1 N/mm (100 N/m), measured and here\n");
-  std::printf("  fabric  along   friction  measured    here      off   wale x course, mm\n");
+  std::printf(
+      "acrylic fabrics: strain at 0.1 N/mm (100 N/m), measured and here: in the first pull from rest, and in "
+      "the\n"
+      "second after one to 0.2 N/mm, counted from where it begins (how far that is from rest)\n");
+  std::printf(
+      "  fabric  along   friction  across  measured   first      off   second      off   begins at\n");
   for (const Acrylic& a : acrylics)
     for (const double friction : {0.0, 0.25}) {
       const RelaxOptions options = acrylic_yarn(a, friction);
       const RelaxResult rest = rested(cell_of(a.courses, a.loop, a.diameter, 24), options);
-      for (const StretchDirection direction : {StretchDirection::course, StretchDirection::wale}) {
-        const bool course = direction == StretchDirection::course;
-        StretchTest test;
-        test.direction = direction;
-        test.turning_points = {2.4};
-        Curve curve;
-        int unsettled = 0;
-        stretch(rest, options, test, [&](const StretchPoint& p) {
-          const double force = course ? p.course_force : p.wale_force;
-          curve.add(course ? p.course_strain : p.wale_strain, force, 0);
-          unsettled += !p.converged;
-          return force < 100 && unsettled < 3;
-        });
-        const double measured = course ? a.course_strain : a.wale_strain,
-                     here = curve.at(curve.stress, curve.strain, 100);
-        std::printf("  %-7s %-7s  %5.2f     %6.3f    %6.3f  %+6.1f %%   %.3f x %.3f%s\n", a.name,
-                    course ? "courses" : "wales", friction, measured, here, 100 * (here / measured - 1),
-                    rest.fabric.width * a.diameter / rest.fabric.wales,
-                    rest.fabric.height * a.diameter / rest.fabric.courses,
-                    unsettled ? "  some points not at rest" : "");
-      }
+      for (const bool course : {true, false})
+        for (const bool held : {false, true}) {
+          Specimen cloth(rest, options, course, held);
+          const double measured = course ? a.course_strain : a.wale_strain, first = cloth.bear(100);
+          cloth.bear(200);
+          const double begin = cloth.bear(0), second = (1 + cloth.bear(100)) / (1 + begin) - 1;
+          std::printf("  %-7s %-7s  %5.2f     %s    %6.3f   %6.3f  %+6.1f %%   %6.3f  %+6.1f %%   %+.3f%s\n",
+                      a.name, course ? "courses" : "wales", friction, held ? "held" : "free", measured, first,
+                      100 * (first / measured - 1), second, 100 * (second / measured - 1), begin,
+                      cloth.unsettled() > 0 ? "  some points not at rest" : "");
+          std::fflush(stdout);
+        }
     }
   std::printf("\n");
 }
@@ -350,16 +385,16 @@ void print_areal_weight() {
 }  // namespace
 }  // namespace loopwright
 
-int main() {
+int main(int count, char** words) {
   using namespace loopwright;
-  print_tightness();
-  print_curves(0.18, false);
-  print_curves(0.12, true);
-  print_corrugation();
-  print_scaling();
-  print_shaken();
-  print_simulated_acrylic();
-  print_acrylic();
-  print_hysteresis();
-  print_areal_weight();
+  const struct {
+    const char* name;
+    void (*print)();
+  } parts[] = {{"tightness", print_tightness},     {"curves", [] { print_curves(0.12, true); }},
+               {"corrugation", print_corrugation}, {"scaling", print_scaling},
+               {"shaken", print_shaken},           {"simulated", print_simulated_acrylic},
+               {"acrylic", print_acrylic},         {"hysteresis", print_hysteresis},
+               {"weight", print_areal_weight}};
+  for (const auto& part : parts)
+    if (count < 2 || std::string(words[1]) == part.name) part.print();
 }

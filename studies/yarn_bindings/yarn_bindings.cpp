@@ -59,7 +59,7 @@ Pulled pulled(const RelaxResult& relaxed, const RelaxOptions& options, const std
       ++result.steps;
       result.converged = result.converged && report.converged;
     }
-    result.force.push_back(motion.course_force(fabric.width) * newton_per_m);
+    result.force.push_back(motion.course_force(fabric.width * (1 + strain)) * newton_per_m);
     if (std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() > 20) break;
   }
   result.us_per_loop_step = 1e6 *
@@ -93,6 +93,14 @@ int main(int count, char** words) {
   test.largest_step = step;
   test.free_across = false;
   const StretchResult reference = stretch(relaxed, options, test);
+  // Motion knows no plates: the same test without them, and in the steps in which motion is pulled.
+  RelaxResult bare = relaxed;
+  RelaxOptions no_plates = options;
+  bare.plates = {};
+  no_plates.plate_room = -1;
+  const StretchResult without_plates = stretch(bare, no_plates, test);
+  test.largest_step = step / 4;
+  const StretchResult fine = stretch(bare, no_plates, test);
   const struct {
     const char* name;
     const char* binding;
@@ -103,11 +111,12 @@ int main(int count, char** words) {
               {"barycentric, straight", "barycentric", 0}};
   std::vector<Pulled> results;
   for (const auto& run : runs) results.push_back(pulled(relaxed, options, run.binding, run.set));
-  std::printf("strain  stretch test");
+  std::printf("strain  stretch test  no plates  no plates, steps of %.3f", step / 4);
   for (const auto& run : runs) std::printf("  %s", run.name);
   std::printf("   (N/m)\n");
   for (std::size_t k = 0; k < reference.points.size(); ++k) {
-    std::printf("%.2f  %.1f", step * static_cast<double>(k), reference.points[k].course_force);
+    std::printf("%.2f  %.1f  %.1f  %.1f", step * static_cast<double>(k), reference.points[k].course_force,
+                without_plates.points[k].course_force, fine.points[4 * k].course_force);
     for (const Pulled& p : results)
       k < p.force.size() ? std::printf("  %.1f", p.force[k]) : std::printf("  -");
     std::printf("\n");

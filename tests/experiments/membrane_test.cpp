@@ -206,5 +206,51 @@ TEST(MembraneLaw, FindsTheConstantsThatMadeAGrid) {
   EXPECT_LT(law.course.share + law.wale.share + law.shear.share, 1e-4);
 }
 
+// One locking for both directions: found again, and cloth that has one of its own for each is not taken for
+// it.
+TEST(SharedLockingLaw, FindsTheConstantsThatMadeAGrid) {
+  const SharedLockingLaw made{300, 550, 220, 50, 2.3, 1.3, {}, {}};
+  const auto g = [](double x) { return x > 0 ? 1 / ((1 - x) * (1 - x)) - 1 - 2 * x : 0; };
+  std::vector<StretchPoint> points, apart;
+  for (const double c : {-0.05, 0.0, 0.1, 0.2})
+    for (const double w : {-0.1, 0.0, 0.05, 0.1}) {
+      StretchPoint p;
+      p.course_strain = c, p.wale_strain = w;
+      const double locks = made.beta * g(made.alpha * (c + made.r * w));
+      p.course_force = made.Cxx * c + made.Cxy * w + locks;
+      p.wale_force = made.Cxy * c + made.Cyy * w + made.r * locks;
+      points.push_back(p);
+      p.course_force = 300 * c + 50 * g(4 * c);
+      p.wale_force = 500 * w + 50 * g(8 * w);
+      apart.push_back(p);
+    }
+  const SharedLockingLaw law = fit_shared_locking(points);
+  EXPECT_NEAR(law.r, made.r, 1e-3);
+  EXPECT_NEAR(law.alpha, made.alpha, 1e-2);
+  EXPECT_NEAR(law.beta, made.beta, 1);
+  EXPECT_NEAR(law.Cxx, made.Cxx, 2);
+  EXPECT_LT(law.course.share + law.wale.share, 1e-3);
+  EXPECT_GT(fit_membrane(points).wale.share, 0.05);
+  EXPECT_GT(fit_shared_locking(apart).wale.share, 0.05);
+  points.resize(7);
+  EXPECT_THROW(fit_shared_locking(points), std::invalid_argument);
+}
+
+// Plain locks when width and height together have used up its yarn: one locking for both is off by half as
+// much as one for each, with a constant less.
+TEST(SharedLockingLaw, IsThatOfPlain) {
+  const Cell cell = cell_of("g", 24, 0.12);
+  StrainGrid grid;
+  grid.course = {0, 0.1, 0.2};
+  grid.wale = {-0.05, 0, 0.05};
+  const std::vector<StretchPoint> points = strain_grid(cell.rest, cell.options, grid);
+  const MembraneLaw each = fit_membrane(points);
+  const SharedLockingLaw both = fit_shared_locking(points);
+  std::printf("plain, l/d 17: separable law off by %.3f, %.3f, shared locking by %.3f, %.3f (r %.2f)\n",
+              each.course.share, each.wale.share, both.course.share, both.wale.share, both.r);
+  EXPECT_LT(both.course.share, 0.6 * each.course.share);
+  EXPECT_LT(both.wale.share, 0.6 * each.wale.share);
+}
+
 }  // namespace
 }  // namespace loopwright

@@ -62,8 +62,10 @@ TEST(Modes, WavesOfAPressedYarn) {
 TEST(Modes, BendingOfAFreeBar) {
   const Fabric fabric = fabric_of({free_yarn(63, 1, [](int i) { return Vec3{i - 31.0, 0, 0}; })});
   std::vector<double> bending;
-  for (const Mode& mode : lowest_modes(fabric, frictionless().model, {.wanted = 6}))
-    if (mode.along < 0.5) bending.push_back(mode.lambda);  // its points may shift along inside end segments
+  for (const Mode& mode : lowest_modes(fabric, frictionless().model, {.wanted = 4})) {
+    EXPECT_LT(mode.along, 0.5);
+    bending.push_back(mode.lambda);
+  }
   const double first = std::pow(4.730041 / 60, 4), second = std::pow(7.853205 / 60, 4);
   ASSERT_EQ(bending.size(), 4U);
   EXPECT_NEAR(bending[0], first, 1e-3 * first);

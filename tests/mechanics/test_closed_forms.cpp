@@ -14,7 +14,7 @@ namespace {
 
 using std::numbers::pi;
 
-ModelOptions plain_options(double sample_spacing = 0.18) {
+ModelOptions plain_options(double sample_spacing = ModelOptions{}.sample_spacing) {
   ModelOptions options = frictionless().model;
   options.sample_spacing = sample_spacing;
   return options;

@@ -69,13 +69,15 @@ TEST(SensitivityCommand, PrintsATableAndDeviations) {
 
 TEST(ModesOption, SaysWhetherClothIsStable) {
   const TemporaryFolder folder;
-  folder.write("garter.verm", garter);
+  folder.write("plain.verm",
+               ";!vermiculation-1\n;;Gauge: 12\n;;Yarn-A: wool 2/28 Nm\n;;Loop-Length: 5.9 mm\n"
+               ";;Size: 1 wales x 1 courses\n;;Edges: periodic\ng\n");
   const CommandOutcome relaxed = run_command(
-      {"relax", "garter.verm", "--friction", "0", "-o", "g.h5", "--modes", "3", "--json", "-"}, folder);
+      {"relax", "plain.verm", "--friction", "0", "-o", "p.h5", "--modes", "3", "--json", "-"}, folder);
   ASSERT_EQ(relaxed.status, 0) << relaxed.err;
   EXPECT_THAT(relaxed.out, HasSubstr("\"stable\": true"));
   EXPECT_THAT(relaxed.out, HasSubstr("\"lambda_B_d4\""));
-  const CommandOutcome measured = run_command({"measure", "g.h5", "--modes", "2"}, folder);
+  const CommandOutcome measured = run_command({"measure", "p.h5", "--modes", "2"}, folder);
   EXPECT_EQ(measured.status, 0) << measured.err;
   EXPECT_THAT(measured.out, HasSubstr("stable without friction"));
 }

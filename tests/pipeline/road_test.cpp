@@ -15,6 +15,7 @@ using testing::AllOf;
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 const char* const plain =
@@ -235,6 +236,19 @@ TEST(Road, InterruptedRunIsSavedAndSaysSo) {
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("stopped"), HasSubstr("large.h5")));
   EXPECT_THAT(folder.names(), ElementsAre("large.h5", "large.verm"));
   EXPECT_EQ(read_state(folder.file("large.h5")).fabric.loops.size(), 3600U);
+}
+
+TEST(Road, JammedYarnIsSaid) {
+  const TemporaryFolder folder;
+  const auto relaxed = [&](const std::string& loop_mm) {
+    folder.write("tight.verm", ";!vermiculation-1\n;;Yarn-A: diameter=1 mm\n;;Loop-Length: " + loop_mm +
+                                   " mm\n;;Edges: periodic\ng\n");
+    return run_command({"relax", "tight.verm", "-o", "tight.h5"}, folder);
+  };
+  const CommandOutcome jammed = relaxed("12"), loose = relaxed("17");
+  EXPECT_EQ(jammed.status, 0) << jammed.err;
+  EXPECT_THAT(jammed.err, HasSubstr("tight.verm: warning: jammed: at rest the yarn is stretched by 1"));
+  EXPECT_THAT(loose.err, Not(HasSubstr("jammed")));
 }
 
 TEST(Road, PicturesAreWrittenOfNotationAndState) {

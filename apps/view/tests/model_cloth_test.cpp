@@ -14,6 +14,7 @@
 #include "../pull_session.hpp"
 #include "../stretch_session.hpp"
 #include "outputs/yarn_scene.hpp"
+#include "piece.hpp"
 
 namespace loopwright {
 namespace {
@@ -49,9 +50,16 @@ TEST(ClothJob, GoesFromTheTextOverTheFirstGeometryToRest) {
   EXPECT_EQ(last.interlacings.intact, 2);
   EXPECT_EQ(last.interlacings.expected, 2);
   EXPECT_FALSE(last.broken());
-  // the cell of the command `relax --periodic` (docs/structures.md: 12.9 wales per cm)
-  const double wales_per_cm = last.fabric->wales / (last.fabric->width * last.fabric->diameter_mm) * 10;
-  EXPECT_NEAR(wales_per_cm, 12.9, 0.1);
+  // the cell of the command `relax --periodic`
+  FabricOptions as_cell;
+  as_cell.edges = Edges::periodic;
+  Diagnostics diagnostics;
+  PieceRequest periodic;
+  periodic.periodic = true;
+  const Knitting knitting = knit_text(request_of("ge\n"), as_cell, diagnostics);
+  const RelaxRun command = run_relax(first_piece(knitting, periodic), false);
+  EXPECT_NEAR(last.fabric->width, command.result.fabric.width, 1e-3 * last.fabric->width);
+  EXPECT_NEAR(last.fabric->height, command.result.fabric.height, 1e-3 * last.fabric->height);
 }
 
 TEST(ClothJob, ErrorsLeaveNoCloth) {

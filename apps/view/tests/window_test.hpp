@@ -1,114 +1,14 @@
 // The real window, driven as a person would: it opens, is typed in, clicked, dragged, and writes its
-// pictures. Needs a display (Xvfb will do).
+// pictures.
 #pragma once
-#include <QApplication>
-#include <QDoubleSpinBox>
-#include <QElapsedTimer>
-#include <QFile>
-#include <QLabel>
-#include <QLineEdit>
-#include <QMouseEvent>
-#include <QScreen>
-#include <QSettings>
-#include <QSlider>
-#include <QStandardPaths>
-#include <QSurfaceFormat>
-#include <QTemporaryDir>
-#include <QTest>
-#include <QTreeWidget>
-#include <cmath>
-#include <memory>
-
-#include "../main_window.hpp"
-#include "../plot_widget.hpp"
-#include "outputs/render.hpp"
+#include "window_fixture.hpp"
 
 namespace loopwright {
 
-inline constexpr const char* rib = R"(;!vermiculation-1
-;;Name: a rib
-;;Gauge: 12
-;;Bed-Gap: 2 mm
-;;Yarn-A: wool 2/28 Nm            ; the usual one
-;;Loop-Length: 5.9 mm
-;;Size: 8 wales x 8 courses
-;;Edges: held
-; two wales, two courses
-ge   ; first
-ge   ; second
-)";
-
-// Where pictures for people go; empty: none are kept.
-inline QString pictures_folder() { return qEnvironmentVariable("LOOPWRIGHT_VIEW_PICTURES"); }
-
-// Share of pixels that differ by more than `by` in some channel.
-inline double difference(const QImage& a, const QImage& b, int by) {
-  if (a.size() != b.size()) return 1;
-  std::size_t apart = 0;
-  for (int y = 0; y < a.height(); ++y)
-    for (int x = 0; x < a.width(); ++x) {
-      const QRgb p = a.pixel(x, y), q = b.pixel(x, y);
-      if (std::abs(qRed(p) - qRed(q)) > by || std::abs(qGreen(p) - qGreen(q)) > by ||
-          std::abs(qBlue(p) - qBlue(q)) > by)
-        ++apart;
-    }
-  return static_cast<double>(apart) / (static_cast<double>(a.width()) * a.height());
-}
-
-class WindowTest : public QObject {
+class WindowTest : public WindowFixture {
   Q_OBJECT
 
-  std::unique_ptr<QTemporaryDir> folder_;
-  std::unique_ptr<MainWindow> window_;
-
-  QString file(const char* name, const char* text) const {
-    const QString path = folder_->filePath(QLatin1String(name));
-    QFile out(path);
-    if (out.open(QIODevice::WriteOnly)) out.write(text);
-    return path;
-  }
-  ClothStage stage() const { return window_->session().moment().stage; }
-  bool at_rest() const {
-    return !window_->session().working() && stage() == ClothStage::at_rest &&
-           window_->cloth().scene_is_current();
-  }
-  void open_rib() {
-    QVERIFY(window_->open(file("rib.verm", rib)));
-    QTRY_VERIFY_WITH_TIMEOUT(at_rest(), 20000);
-  }
-  QString text() const { return QString::fromStdString(window_->session().document().text()); }
-  // Pictures of the whole window, those of large screens at a size that a page can hold.
-  void keep_picture(const char* name) {
-    if (pictures_folder().isEmpty()) return;
-    QImage picture = window_->screen()->grabWindow(window_->winId()).toImage();
-    if (picture.width() > 1600) picture = picture.scaledToWidth(1600, Qt::SmoothTransformation);
-    picture.save(pictures_folder() + QLatin1Char('/') + QLatin1String(name));
-  }
-
  private slots:
-  void initTestCase() {
-    QStandardPaths::setTestModeEnabled(true);
-    QSettings::setDefaultFormat(QSettings::IniFormat);
-  }
-
-  void init() {
-    folder_ = std::make_unique<QTemporaryDir>();
-    QSettings::setPath(QSettings::IniFormat, QSettings::UserScope, folder_->path());
-    window_ = std::make_unique<MainWindow>(folder_->filePath(QStringLiteral("autosave")));
-    window_->resize(1280, 800);
-    window_->show();
-    QVERIFY(QTest::qWaitForWindowExposed(window_.get()));
-    connect(&window_->session(), &Session::refused, this,
-            [](const QString& why) { qInfo("refused: %s", qPrintable(why)); });
-    // without a window manager nobody else makes it the one that gets the keys
-    QApplication::setActiveWindow(window_.get());
-  }
-
-  void cleanup() {
-    window_.reset();
-    folder_.reset();
-  }
-
   void opens_and_relaxes() {
     QElapsedTimer clock;
     clock.start();
@@ -297,30 +197,6 @@ class WindowTest : public QObject {
     QCOMPARE(text(), QString::fromUtf8(rib));
   }
 
-  void knitout_is_shown_and_not_edited() {
-    QVERIFY(window_->open(QStringLiteral(LOOPWRIGHT_SOURCE_DIR "/examples/swatch.k")));
-    QTRY_VERIFY_WITH_TIMEOUT(window_->session().fabric() != nullptr, 30000);
-    QVERIFY(window_->editor().isReadOnly());
-    QVERIFY(!window_->session().diagram().passes.empty());
-    // the third needle of the second pass
-    auto* slider = window_->findChild<QSlider*>(QStringLiteral("acts"));
-    DiagramView& paper = window_->diagram();
-    QCOMPARE(slider->maximum(), paper.acts());
-    QVERIFY(paper.acts() > 20);
-    for (int k = 1; k <= 20; ++k) {
-      slider->setValue(k);
-      QCOMPARE(window_->editor().textCursor().blockNumber() + 1, paper.act_place(k - 1).line);
-      QVERIFY2(k == 1 || paper.act_place(k - 1).line > paper.act_place(k - 2).line,
-               "in the order of the file");
-    }
-    const std::string before = window_->session().document().text();
-    DiagramView& diagram = window_->diagram();
-    diagram.set_tool(DiagramTool::tuck);
-    QTest::mouseClick(diagram.viewport(), Qt::LeftButton, {}, diagram.needle_place(0, false, 0).toPoint());
-    QCOMPARE(window_->session().document().text(), before);
-    window_->session().cancel();
-  }
-
   void picture_is_that_of_the_command() {
     open_rib();
     ClothView& cloth = window_->cloth();
@@ -486,21 +362,9 @@ class WindowTest : public QObject {
           pictures, seconds, pictures / seconds);
     ClothView& cloth = window_->cloth();
     QTest::qWait(500);
-    QTest::mousePress(&cloth, Qt::RightButton, {}, {200, 200});
-    const int drawn = cloth.frames_drawn();
-    clock.restart();
-    for (int i = 0; clock.elapsed() < 2000; ++i) {
-      // Qt Test's moves carry no button, the window's own do
-      const QPointF at(200 + 4 * (i % 60), 200);
-      QMouseEvent move(QEvent::MouseMove, at, at, Qt::NoButton, Qt::RightButton, Qt::NoModifier);
-      QApplication::sendEvent(&cloth, &move);
-      QCoreApplication::processEvents();
-    }
-    const double turning = static_cast<double>(clock.elapsed()) * 1e-3;
-    const int frames = cloth.frames_drawn() - drawn;
-    QTest::mouseRelease(&cloth, Qt::RightButton, {}, {200, 200});
-    QVERIFY(frames > 0);
-    qInfo("turning: %.1f frames a second in %d x %d, the last took %.1f ms", frames / turning, cloth.width(),
+    const double rate = turning_rate(2000);
+    QVERIFY(rate > 0);
+    qInfo("turning: %.1f frames a second in %d x %d, the last took %.1f ms", rate, cloth.width(),
           cloth.height(), cloth.last_frame_ms());
   }
 };

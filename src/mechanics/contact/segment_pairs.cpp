@@ -3,27 +3,20 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <tuple>
 
 namespace loopwright {
 namespace {
 
-struct Box {
-  std::array<double, 3> low, high;
-};
-
 struct ImagedSegment {
   std::int32_t segment;
   std::int8_t m, n;
-  Box box;
+  SampleBox box;
 };
 
-Box box_of(const YarnModel& model, const SamplePlaces& places, int segment) {
-  const auto begin = static_cast<std::size_t>(segment * model.samples);
-  const auto end = begin + static_cast<std::size_t>(model.samples);
-  Box box{{places.x[begin], places.y[begin], places.z[begin]},
-          {places.x[begin], places.y[begin], places.z[begin]}};
+SampleBox box_of(const SamplePlaces& places, std::size_t begin, std::size_t end) {
+  SampleBox box{{places.x[begin], places.y[begin], places.z[begin]},
+                {places.x[begin], places.y[begin], places.z[begin]}};
   for (std::size_t k = begin + 1; k < end; ++k) {
     const std::array<double, 3> p{places.x[k], places.y[k], places.z[k]};
     for (std::size_t c = 0; c < 3; ++c) {
@@ -34,19 +27,23 @@ Box box_of(const YarnModel& model, const SamplePlaces& places, int segment) {
   return box;
 }
 
-bool apart(const Box& a, const Box& b, double range) {
+bool apart(const SampleBox& a, const SampleBox& b, double range) {
   for (std::size_t c = 0; c < 3; ++c)
     if (a.low[c] - b.high[c] > range || b.low[c] - a.high[c] > range) return true;
   return false;
 }
 
-double smallest_distance2(const YarnModel& model, const SamplePlaces& p, int a, int b, const Vec3& image) {
+// Squared distance of the samples of two segments; `beyond2` where none is less.
+double smallest_distance2(const YarnModel& model, const SamplePlaces& p, int a, int b, const Vec3& image,
+                          double beyond2) {
   const auto i0 = static_cast<std::size_t>(a * model.samples),
              j0 = static_cast<std::size_t>(b * model.samples);
   const auto count = static_cast<std::size_t>(model.samples);
-  double nearest = std::numeric_limits<double>::infinity();
+  const SampleBox& box = p.boxes[static_cast<std::size_t>(b)];
+  double nearest = beyond2;
   for (std::size_t i = i0; i < i0 + count; ++i) {
     const double x = p.x[i] - image.x, y = p.y[i] - image.y, z = p.z[i] - image.z;
+    if (squared_distance(x, y, z, box) >= nearest) continue;
     for (std::size_t j = j0; j < j0 + count; ++j) {
       const double dx = x - p.x[j], dy = y - p.y[j], dz = z - p.z[j], d2 = dx * dx + dy * dy + dz * dz;
       nearest = d2 < nearest ? d2 : nearest;
@@ -66,11 +63,11 @@ bool turns_ahead(const YarnModel::Yarn& yarn, int m, int n, int& turns) {
 }
 
 std::vector<ImagedSegment> imaged_segments(const YarnModel& model, const YarnState& state,
-                                           const SamplePlaces& places, double range, Box& whole) {
+                                           const SamplePlaces& places, double range, SampleBox& whole) {
   std::vector<ImagedSegment> all;
   whole = {{1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}};
   for (int e = 0; e < model.segments; ++e) {
-    all.push_back({e, 0, 0, box_of(model, places, e)});
+    all.push_back({e, 0, 0, places.boxes[static_cast<std::size_t>(e)]});
     for (std::size_t c = 0; c < 3; ++c) {
       whole.low[c] = std::min(whole.low[c], all.back().box.low[c]);
       whole.high[c] = std::max(whole.high[c], all.back().box.high[c]);
@@ -88,7 +85,7 @@ std::vector<ImagedSegment> imaged_segments(const YarnModel& model, const YarnSta
       if (m < 0 || (m == 0 && n <= 0)) continue;
       const Vec3 t = state.lattice(m, n);
       for (int e = 0; e < model.segments; ++e) {
-        Box box = all[static_cast<std::size_t>(e)].box;
+        SampleBox box = all[static_cast<std::size_t>(e)].box;
         for (std::size_t c = 0; c < 3; ++c) {
           box.low[c] += t[static_cast<int>(c)];
           box.high[c] += t[static_cast<int>(c)];
@@ -116,8 +113,10 @@ void place_samples(const YarnModel& model, const std::vector<Vec3>& extended, Sa
   places.x.resize(count);
   places.y.resize(count);
   places.z.resize(count);
+  places.boxes.clear();
   std::size_t k = 0;
   for (int e = 0; e < model.segments; ++e) {
+    const std::size_t begin = k;
     const Vec3* q = extended.data() + model.first[static_cast<std::size_t>(e)];
     for (std::size_t i = 0; i < static_cast<std::size_t>(model.samples); ++i, ++k) {
       const auto& w = model.weights[i];
@@ -125,13 +124,14 @@ void place_samples(const YarnModel& model, const std::vector<Vec3>& extended, Sa
       places.y[k] = w[0] * q[0].y + w[1] * q[1].y + w[2] * q[2].y + w[3] * q[3].y;
       places.z[k] = w[0] * q[0].z + w[1] * q[1].z + w[2] * q[2].z + w[3] * q[3].z;
     }
+    places.boxes.push_back(box_of(places, begin, k));
   }
 }
 
 void find_segment_pairs(const YarnModel& model, const YarnState& state, const SamplePlaces& places,
                         double range, std::vector<SegmentPair>& pairs) {
   pairs.clear();
-  Box whole;
+  SampleBox whole;
   const std::vector<ImagedSegment> all = imaged_segments(model, state, places, range, whole);
 
   // Grid over box centres; two boxes nearer than `range` have centres within range + the largest extent.
@@ -148,7 +148,7 @@ void find_segment_pairs(const YarnModel& model, const YarnState& state, const Sa
     const double cells = std::ceil((whole.high[c] - whole.low[c]) / cell) + 3;
     size[c] = static_cast<int>(std::min(cells, 2000.0));
   }
-  const auto cell_of = [&](const Box& box, std::array<int, 3>& at) {
+  const auto cell_of = [&](const SampleBox& box, std::array<int, 3>& at) {
     for (std::size_t c = 0; c < 3; ++c) {
       const double place = (0.5 * (box.low[c] + box.high[c]) - origin[c]) / cell;
       at[c] = static_cast<int>(std::clamp(place, 0.0, size[c] - 1.0));
@@ -177,7 +177,7 @@ void find_segment_pairs(const YarnModel& model, const YarnState& state, const Sa
 
   const double range2 = range * range;
   for (int a = 0; a < model.segments; ++a) {
-    const Box& box = all[static_cast<std::size_t>(a)].box;
+    const SampleBox& box = all[static_cast<std::size_t>(a)].box;
     const YarnModel::Yarn& yarn = model.yarn_of(a);
     cell_of(box, at);
     for (int k = std::max(at[2] - 1, 0); k <= std::min(at[2] + 1, size[2] - 1); ++k)
@@ -207,7 +207,7 @@ void find_segment_pairs(const YarnModel& model, const YarnState& state, const Sa
               pair.arc_offset = ahead * yarn.rest_length;
             }
             pair.distance2 =
-                smallest_distance2(model, places, a, other.segment, state.lattice(other.m, other.n));
+                smallest_distance2(model, places, a, other.segment, state.lattice(other.m, other.n), range2);
             if (pair.distance2 < range2) pairs.push_back(pair);
           }
         }

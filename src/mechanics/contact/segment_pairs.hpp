@@ -10,6 +10,7 @@ namespace loopwright {
 // Places of all contact samples, structure of arrays: sample k of segment e at e * samples + k.
 struct SamplePlaces {
   std::vector<double> x, y, z;
+  std::vector<SampleBox> boxes;  // [segment]
 };
 
 // Segment b, taken at lattice image (m, n), near segment a. Each unordered pair appears once.

@@ -14,21 +14,42 @@ struct Bend {
   double stiffness = 1;    // B
   double rest_length = 1;  // h
 
+  // p', p'' and their products at a Gauss point, with what its energy density is multiplied by.
+  struct Point {
+    std::array<double, 3> a{}, b{};
+    double A = 0, C = 0, D = 0, weight = 0;
+  };
+  Point point(const SegmentDofs& x, std::size_t g) const {
+    Point p;
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t c = 0; c < 3; ++c) {
+        p.a[c] += gauss_spline[g].slope[i] * x[3 * i + c];
+        p.b[c] += gauss_spline[g].curve[i] * x[3 * i + c];
+      }
+    p.A = p.a[0] * p.a[0] + p.a[1] * p.a[1] + p.a[2] * p.a[2];
+    p.C = p.a[0] * p.b[0] + p.a[1] * p.b[1] + p.a[2] * p.b[2];
+    p.D = p.b[0] * p.b[0] + p.b[1] * p.b[1] + p.b[2] * p.b[2];
+    p.weight = 0.5 * gauss_weight[g] * stiffness * rest_length;
+    return p;
+  }
+
+  double energy(const SegmentDofs& x) const {
+    double sum = 0;
+    for (std::size_t g = 0; g < 4; ++g) {
+      const Point p = point(x, g);
+      const double i1 = 1 / p.A, i2 = i1 * i1;
+      sum += p.weight * (p.D * i2 - p.C * p.C * (i2 * i1));
+    }
+    return sum;
+  }
+
   LocalTerm<12> evaluate(const SegmentDofs& x) const {
     LocalTerm<12> term;
     for (std::size_t g = 0; g < 4; ++g) {
       const auto& h1 = gauss_spline[g].slope;
       const auto& h2 = gauss_spline[g].curve;
-      std::array<double, 3> a{}, b{};
-      for (std::size_t i = 0; i < 4; ++i)
-        for (std::size_t c = 0; c < 3; ++c) {
-          a[c] += h1[i] * x[3 * i + c];
-          b[c] += h2[i] * x[3 * i + c];
-        }
-      const double A = a[0] * a[0] + a[1] * a[1] + a[2] * a[2];
-      const double C = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-      const double D = b[0] * b[0] + b[1] * b[1] + b[2] * b[2];
-      const double w = 0.5 * gauss_weight[g] * stiffness * rest_length;
+      const Point p = point(x, g);
+      const auto& [a, b, A, C, D, w] = p;
       const double i1 = 1 / A, i2 = i1 * i1, i3 = i2 * i1, i4 = i2 * i2;
       const double f_A = w * (-2 * D * i3 + 3 * C * C * i4), f_C = w * (-2 * C * i3), f_D = w * i2;
       const double f_AA = w * (6 * D * i4 - 12 * C * C * i4 * i1), f_AC = w * 6 * C * i4,

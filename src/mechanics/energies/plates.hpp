@@ -16,6 +16,9 @@ struct Plates {
   double stiffness = 50, low = -1, high = 1, rest_length = 1;
   int samples = 8;
 
+  // Does any sample in this box lie beyond a plate?
+  bool touch(const SampleBox& box) const { return box.low[2] < low || box.high[2] > high; }
+
   LocalTerm<12> evaluate(const SegmentDofs& x, const SampleWeights& weights) const {
     LocalTerm<12> term;
     const double k = stiffness * rest_length / samples;

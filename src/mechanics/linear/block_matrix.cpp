@@ -25,20 +25,26 @@ std::size_t BlockMatrix::place(std::int32_t row, std::int32_t col) const {
 double dot(const Unknowns& a, const Unknowns& b) {
   // Summed by fixed chunks: the same result for any number of threads.
   const int chunks = chunk_count(a.u.size());
-  double total = 0;
-  for (int c = 0; c < chunks; ++c) {
+  std::vector<double> sums(static_cast<std::size_t>(chunks), 0);
+  parallel_chunks(chunks, [&](int c) {
     const std::size_t begin = static_cast<std::size_t>(c) * rows_per_chunk;
     const std::size_t end = std::min(a.u.size(), begin + rows_per_chunk);
     double sum = 0;
     for (std::size_t i = begin; i < end; ++i) sum += dot(a.u[i], b.u[i]);
-    total += sum;
-  }
+    sums[static_cast<std::size_t>(c)] = sum;
+  });
+  double total = 0;
+  for (const double sum : sums) total += sum;
   for (std::size_t k = 0; k < 3; ++k) total += a.g[k] * b.g[k];
   return total;
 }
 
 void axpy(double s, const Unknowns& x, Unknowns& y) {
-  for (std::size_t i = 0; i < x.u.size(); ++i) y.u[i] += s * x.u[i];
+  parallel_chunks(chunk_count(x.u.size()), [&](int c) {
+    const std::size_t begin = static_cast<std::size_t>(c) * rows_per_chunk;
+    const std::size_t end = std::min(x.u.size(), begin + rows_per_chunk);
+    for (std::size_t i = begin; i < end; ++i) y.u[i] += s * x.u[i];
+  });
   for (std::size_t k = 0; k < 3; ++k) y.g[k] += s * x.g[k];
 }
 

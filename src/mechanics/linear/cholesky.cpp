@@ -22,6 +22,8 @@ extern "C" void omp_set_num_threads(int) __attribute__((weak));
 namespace loopwright {
 namespace {
 
+constexpr int small_order = 3000;  // unknowns
+
 // Lower triangle in compressed columns = upper triangle by rows of the symmetric matrix.
 struct LowerColumns {
   std::vector<int> start, row;
@@ -60,7 +62,8 @@ void lower_values(const BlockMatrix& m, double shift, LowerColumns& out) {
       }
 }
 
-// Solves the 3 x 3 symmetric positive definite system; false if it is not positive definite.
+}  // namespace
+
 bool invert3(const Block& s, Block& inverse) {
   Block l{};
   for (std::size_t i = 0; i < 3; ++i)
@@ -89,8 +92,6 @@ bool invert3(const Block& s, Block& inverse) {
   }
   return true;
 }
-
-}  // namespace
 
 struct Cholesky::Factor {
   std::vector<std::int32_t> row_start, column;  // pattern of the analysed matrix
@@ -181,6 +182,8 @@ struct Cholesky::Factor {
     cholmod_free_work(&common);
     lower = {};
     row_start = column = {};
+    // Found again sooner than kept, for the many small factors of a large piece.
+    if (unknowns < small_order) std::vector<int>().swap(order);
   }
   void analyse(const BlockMatrix& m) {
     for (int attempt = 0; attempt < 2; ++attempt) {

@@ -10,6 +10,9 @@
 
 namespace loopwright {
 
+// Inverse of a symmetric 3 x 3 matrix; false if it is not positive definite.
+bool invert3(const Block& s, Block& inverse);
+
 class Cholesky {
  public:
   Cholesky();

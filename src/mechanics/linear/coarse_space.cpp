@@ -4,11 +4,13 @@
 #include <cmath>
 
 #include "base/parallel.hpp"
+#include "mechanics/linear/plate_projection.hpp"
 
 namespace loopwright {
 namespace {
 
-constexpr int rows_per_chunk = 1024;
+constexpr int rows_per_chunk = 256;
+constexpr std::size_t nodes_per_chunk = 4096;
 
 // Coarse points and the control points that they carry: P by columns.
 struct Columns {
@@ -98,6 +100,27 @@ class RowSums {
   std::vector<std::size_t> order_;
 };
 
+void project_rows(const CoarseSpace& space, const BlockMatrix& matrix, double shift, BlockMatrix& coarse) {
+  const Columns columns = columns_of(space);
+  const int chunks = (space.points + rows_per_chunk - 1) / rows_per_chunk;
+  std::vector<Part> parts(static_cast<std::size_t>(chunks));
+  parallel_chunks(chunks, [&](int chunk) {
+    RowSums sums(space, columns, matrix, shift);
+    const int end = std::min(space.points, (chunk + 1) * rows_per_chunk);
+    for (int row = chunk * rows_per_chunk; row < end; ++row)
+      sums.add_row(static_cast<std::size_t>(row), parts[static_cast<std::size_t>(chunk)]);
+  });
+  coarse.row_start.assign(1, 0);
+  coarse.column.clear();
+  coarse.block.clear();
+  for (const Part& part : parts) {
+    for (const std::int32_t length : part.length)
+      coarse.row_start.push_back(coarse.row_start.back() + length);
+    coarse.column.insert(coarse.column.end(), part.column.begin(), part.column.end());
+    coarse.block.insert(coarse.block.end(), part.block.begin(), part.block.end());
+  }
+}
+
 }  // namespace
 
 void CoarseSpace::drop_empty_columns() {
@@ -115,74 +138,70 @@ void CoarseSpace::drop_empty_columns() {
 
 void CoarseSpace::restricted(const std::vector<Vec3>& r, std::vector<Vec3>& c) const {
   c.assign(static_cast<std::size_t>(points), Vec3{});
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    for (std::size_t k = 0; k < 4; ++k)
-      c[static_cast<std::size_t>(rows[i].point[k])] += rows[i].weight[k] * r[i];
+  for (std::size_t i = 0; i < r.size(); ++i)
+    each_entry(i, [&](std::int32_t point, double w, double a, double b) {
+      Vec3& sum = c[static_cast<std::size_t>(point)];
+      sum += w * r[i];
+      sum.z += a * r[i].x + b * r[i].y;
+    });
 }
 
 void CoarseSpace::add_prolonged(const std::vector<Vec3>& c, std::vector<Vec3>& u) const {
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    for (std::size_t k = 0; k < 4; ++k)
-      u[i] += rows[i].weight[k] * c[static_cast<std::size_t>(rows[i].point[k])];
+  const int chunks = static_cast<int>((u.size() + nodes_per_chunk - 1) / nodes_per_chunk);
+  parallel_chunks(chunks, [&](int chunk) {
+    const std::size_t begin = static_cast<std::size_t>(chunk) * nodes_per_chunk;
+    for (std::size_t i = begin; i < std::min(u.size(), begin + nodes_per_chunk); ++i)
+      each_entry(i, [&](std::int32_t point, double w, double a, double b) {
+        const Vec3& v = c[static_cast<std::size_t>(point)];
+        u[i] += w * v + Vec3{a * v.z, b * v.z, 0};
+      });
+  });
 }
 
 void CoarseSpace::project(const BlockMatrix& matrix, double shift, BlockMatrix& coarse) const {
-  const Columns columns = columns_of(*this);
-  const int chunks = (points + rows_per_chunk - 1) / rows_per_chunk;
-  std::vector<Part> parts(static_cast<std::size_t>(chunks));
-  parallel_chunks(chunks, [&](int chunk) {
-    RowSums sums(*this, columns, matrix, shift);
-    const int end = std::min(points, (chunk + 1) * rows_per_chunk);
-    for (int row = chunk * rows_per_chunk; row < end; ++row)
-      sums.add_row(static_cast<std::size_t>(row), parts[static_cast<std::size_t>(chunk)]);
-  });
-  coarse.row_start.assign(1, 0);
-  coarse.column.clear();
-  coarse.block.clear();
-  for (const Part& part : parts) {
-    for (const std::int32_t length : part.length)
-      coarse.row_start.push_back(coarse.row_start.back() + length);
-    coarse.column.insert(coarse.column.end(), part.column.begin(), part.column.end());
-    coarse.block.insert(coarse.block.end(), part.block.begin(), part.block.end());
-  }
+  if (rows.empty())
+    project_plate(plate, points, matrix, shift, coarse);
+  else
+    project_rows(*this, matrix, shift, coarse);
   coarse.metric.assign(coarse.column.size(), 0);
   coarse.border.assign(static_cast<std::size_t>(points), Block{});
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    for (std::size_t k = 0; k < 4; ++k)
-      for (std::size_t d = 0; d < 9; ++d)
-        coarse.border[static_cast<std::size_t>(rows[i].point[k])][d] +=
-            rows[i].weight[k] * matrix.border[i][d];
-  coarse.corner = matrix.corner;
-  for (std::size_t m = 0; m < 3; ++m) coarse.corner[4 * m] += shift * matrix.measure_metric[m];
+  coarse.corner = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   coarse.measure_metric = {};
 }
 
-CoarseSpace hat_space(const std::vector<Vec3>& places, const std::vector<std::uint8_t>& held, int nx,
-                      int ny) {
+CoarseSpace plate_space(const std::vector<Vec3>& places, const std::vector<std::uint8_t>& held, int nx,
+                        int ny) {
+  constexpr double least_carried = 0.01;  // sum of squared weights; columns below it would repeat others
   Vec3 low = places.front(), high = places.front();
   for (const Vec3& p : places)
     for (int k = 0; k < 3; ++k) {
       low[k] = std::min(low[k], p[k]);
       high[k] = std::max(high[k], p[k]);
     }
-  const auto share = [](double v, double least, double most, int cells) {
-    return std::clamp((v - least) / std::max(1e-12, most - least) * cells, 0.0, cells - 1e-9);
-  };
   CoarseSpace space;
-  space.rows.resize(places.size());
-  space.points = (nx + 1) * (ny + 1);
+  PlateGrid& plate = space.plate;
+  plate.nx = nx;
+  plate.ny = ny;
+  plate.width = std::max(1e-9, (high.x - low.x) / nx);
+  plate.height = std::max(1e-9, (high.y - low.y) / ny);
+  plate.places.resize(places.size());
   for (std::size_t i = 0; i < places.size(); ++i) {
     if (held[i] != 0) continue;
-    const double x = share(places[i].x, low.x, high.x, nx), y = share(places[i].y, low.y, high.y, ny);
+    const double x = std::clamp((places[i].x - low.x) / plate.width, 0.0, nx - 1e-9),
+                 y = std::clamp((places[i].y - low.y) / plate.height, 0.0, ny - 1e-9);
     const int cx = static_cast<int>(x), cy = static_cast<int>(y);
-    for (int k = 0; k < 4; ++k) {
-      const int dx = k & 1, dy = k >> 1;
-      const auto at = static_cast<std::size_t>(k);
-      space.rows[i].point[at] = (cy + dy) * (nx + 1) + cx + dx;
-      space.rows[i].weight[at] = (dx ? x - cx : 1 - (x - cx)) * (dy ? y - cy : 1 - (y - cy));
-    }
+    plate.places[i] = {cy * nx + cx, static_cast<float>(x - cx), static_cast<float>(y - cy),
+                       static_cast<float>(places[i].z - 0.5 * (low.z + high.z))};
   }
-  space.drop_empty_columns();
+  plate.number.resize(static_cast<std::size_t>((nx + 2) * (ny + 2)));
+  for (std::size_t k = 0; k < plate.number.size(); ++k) plate.number[k] = static_cast<std::int32_t>(k);
+  std::vector<double> carried(plate.number.size(), 0);
+  for (std::size_t i = 0; i < places.size(); ++i)
+    space.each_entry(i, [&](std::int32_t point, double w, double, double) {
+      carried[static_cast<std::size_t>(point)] += w * w;
+    });
+  for (std::size_t k = 0; k < carried.size(); ++k)
+    plate.number[k] = carried[k] > least_carried ? space.points++ : -1;
   return space;
 }
 

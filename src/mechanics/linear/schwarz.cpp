@@ -6,14 +6,20 @@
 #include <cstdlib>
 
 #include "base/parallel.hpp"
+#include "mechanics/linear/conjugate_gradient.hpp"
 
 namespace loopwright {
 namespace {
 
-constexpr int hat_patches = 2;    // side of a cell of hat functions, in patches
-constexpr int patch_nodes = 250;  // wanted in a patch, its overlap not counted
+constexpr int patch_nodes = 120;  // wanted in a patch, its overlap not counted
+constexpr int fresh_iterations =
+    5;  // for the fabric's answers to its measures, and when they are known nearly
+constexpr int known_iterations = 2;
+constexpr double ridge = 1e-7;  // of the plate's diagonal: splines that carry little all but repeat others
 
-std::size_t place(std::int32_t i) { return static_cast<std::size_t>(i); }
+constexpr std::size_t nodes_per_chunk = 4096;
+
+std::size_t place(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 // Cells of a grid over the places' bounding box, nearly square, with about `patch_nodes` points each.
 struct PatchGrid {
@@ -40,9 +46,9 @@ struct PatchGrid {
   }
 };
 
-// Adds the neighbours along the yarn: a quarter of a loop wherever a yarn leaves the patch. (Neighbours in
-// contact as well would save a tenth of the iterations and cost a third more memory.) `in` is all zero before
-// and after.
+// Adds the neighbours along the yarn: a quarter of a loop wherever a yarn leaves the patch. (The next one
+// alone would make factors smaller by a third and iterations more by the same.) `in` is all zero before and
+// after.
 void add_overlap(const BlockMatrix& matrix, std::vector<std::uint8_t>& in, std::vector<std::int32_t>& nodes) {
   constexpr int reach = 3;  // control points of one segment
   for (const std::int32_t i : nodes) in[place(i)] = 1;
@@ -85,6 +91,7 @@ BlockMatrix patch_matrix(const BlockMatrix& matrix, const std::vector<std::int32
 void Schwarz::set_patches(const std::vector<Vec3>& places, const std::vector<std::uint8_t>& held,
                           const BlockMatrix& matrix, const CoarseSpace& coarse) {
   const PatchGrid grid(places);
+  control_points_ = places.size();
   std::vector<std::vector<std::int32_t>> own(place(grid.nx * grid.ny));
   for (std::size_t i = 0; i < places.size(); ++i)
     own[grid.cell(places[i])].push_back(static_cast<std::int32_t>(i));
@@ -94,7 +101,8 @@ void Schwarz::set_patches(const std::vector<Vec3>& places, const std::vector<std
     levels_.back()->space = std::move(space);
   };
   if (coarse.points > 0) add_level(coarse);
-  add_level(hat_space(places, held, std::max(1, grid.nx / hat_patches), std::max(1, grid.ny / hat_patches)));
+  add_level(plate_space(places, held, grid.nx, grid.ny));
+  answers_.clear();
 
   patches_.clear();
   std::vector<std::uint8_t> in(places.size(), 0);
@@ -104,6 +112,25 @@ void Schwarz::set_patches(const std::vector<Vec3>& places, const std::vector<std
     patches_.push_back(std::make_unique<Patch>());
     patches_.back()->nodes = std::move(nodes);
   }
+  number_results();
+}
+
+// Where each control point finds its results among those of all patches, patch after patch.
+void Schwarz::number_results() {
+  std::size_t total = 0;
+  result_start_.assign(control_points_ + 1, 0);
+  for (const auto& patch : patches_) {
+    patch->first_result = total;
+    total += patch->nodes.size();
+    for (const std::int32_t i : patch->nodes) ++result_start_[place(i) + 1];
+  }
+  for (std::size_t i = 0; i < control_points_; ++i) result_start_[i + 1] += result_start_[i];
+  result_at_.resize(total);
+  results_.resize(total);
+  std::vector<std::int32_t> fill(result_start_.begin(), result_start_.end() - 1);
+  for (const auto& patch : patches_)
+    for (std::size_t k = 0; k < patch->nodes.size(); ++k)
+      result_at_[place(fill[place(patch->nodes[k])]++)] = static_cast<std::int32_t>(patch->first_result + k);
 }
 
 bool Schwarz::factor(const BlockMatrix& matrix, double shift) {
@@ -115,33 +142,89 @@ bool Schwarz::factor(const BlockMatrix& matrix, double shift) {
     patch.factor.compact();
   });
   if (!definite) return false;
-  BlockMatrix seen;
   for (const auto& level : levels_) {
+    BlockMatrix seen;
     level->space.project(matrix, shift, seen);
+    if (level->space.rows.empty())
+      for (std::int32_t r = 0; r < seen.rows(); ++r) {
+        Block& own = seen.block[seen.place(r, r)];
+        for (const std::size_t d : {0, 4, 8}) own[d] *= 1 + ridge;
+      }
     if (!level->factor.factor(seen, 0)) return false;
     level->factor.compact();
   }
-  return true;
+  return answer_measures(matrix, shift);
+}
+
+bool Schwarz::answer_measures(const BlockMatrix& matrix, double shift) {
+  const bool known = !answers_.empty();
+  answers_.resize(3);
+  Unknowns product;
+  for (std::size_t k = 0; k < 3; ++k) {
+    Unknowns& answer = answers_[k];
+    if (!known) answer.u.assign(control_points_, Vec3{});
+    answer.g = {};
+    answer.g[k] = 1;
+    multiply(matrix, shift, answer, product);  // what is not yet at rest when the measure changes by one
+    product.g = {};
+    if (!(dot(product, product) > 0)) continue;
+    Unknowns change;
+    const ConjugateGradientResult solved = conjugate_gradient(
+        matrix, shift, [this](const Unknowns& r, Unknowns& z) { solve_points(r, z); }, product, 1e-3,
+        known ? known_iterations : fresh_iterations, change);
+    iterations += solved.iterations;
+    if (solved.indefinite) return false;
+    for (std::size_t i = 0; i < control_points_; ++i) answer.u[i] -= change.u[i];
+  }
+  Block seen;
+  for (std::size_t l = 0; l < 3; ++l) {
+    multiply(matrix, shift, answers_[l], product);
+    for (std::size_t k = 0; k < 3; ++k) seen[3 * k + l] = dot(answers_[k], product);
+  }
+  return invert3(seen, measures_inverse_);
+}
+
+void Schwarz::solve_points(const Unknowns& b, Unknowns& x) {
+  parallel_chunks(static_cast<int>(patches_.size()), [&](int p) {
+    Patch& patch = *patches_[place(p)];
+    Unknowns right, result;
+    right.u.resize(patch.nodes.size());
+    for (std::size_t k = 0; k < patch.nodes.size(); ++k) right.u[k] = b.u[place(patch.nodes[k])];
+    patch.factor.solve(right, result);
+    for (std::size_t k = 0; k < patch.nodes.size(); ++k)
+      results_[patch.first_result + k] = {static_cast<float>(result.u[k].x),
+                                          static_cast<float>(result.u[k].y),
+                                          static_cast<float>(result.u[k].z)};
+  });
+  x.g = {};
+  x.u.resize(control_points_);
+  const int chunks = static_cast<int>((control_points_ + nodes_per_chunk - 1) / nodes_per_chunk);
+  parallel_chunks(chunks, [&](int c) {
+    const std::size_t begin = place(c) * nodes_per_chunk;
+    for (std::size_t i = begin; i < std::min(control_points_, begin + nodes_per_chunk); ++i) {
+      Vec3 sum;
+      for (auto at = place(result_start_[i]); at < place(result_start_[i + 1]); ++at) {
+        const auto& part = results_[place(result_at_[at])];
+        sum += Vec3{part[0], part[1], part[2]};
+      }
+      x.u[i] = sum;
+    }
+  });
+  for (const auto& level : levels_) {
+    level->space.restricted(b.u, level->right.u);
+    level->factor.solve(level->right, level->result);
+    level->space.add_prolonged(level->result.u, x.u);
+  }
 }
 
 void Schwarz::solve(const Unknowns& b, Unknowns& x) {
-  parallel_chunks(static_cast<int>(patches_.size()), [&](int p) {
-    Patch& patch = *patches_[place(p)];
-    patch.right.u.resize(patch.nodes.size());
-    for (std::size_t k = 0; k < patch.nodes.size(); ++k) patch.right.u[k] = b.u[place(patch.nodes[k])];
-    patch.factor.solve(patch.right, patch.result);
-  });
-  x.u.assign(b.u.size(), Vec3{});
-  for (const auto& patch : patches_)
-    for (std::size_t k = 0; k < patch->nodes.size(); ++k) x.u[place(patch->nodes[k])] += patch->result.u[k];
-
-  x.g = {};
-  for (const auto& level : levels_) {
-    level->space.restricted(b.u, level->right.u);
-    level->right.g = b.g;
-    level->factor.solve(level->right, level->result);
-    level->space.add_prolonged(level->result.u, x.u);
-    for (std::size_t k = 0; k < 3; ++k) x.g[k] += level->result.g[k];
+  solve_points(b, x);
+  Measures force{};
+  for (std::size_t k = 0; k < 3; ++k) force[k] = dot(answers_[k], b);
+  for (std::size_t k = 0; k < 3; ++k) {
+    double change = 0;
+    for (std::size_t l = 0; l < 3; ++l) change += measures_inverse_[3 * k + l] * force[l];
+    axpy(change, answers_[k], x);
   }
 }
 

@@ -65,7 +65,9 @@ bool StepSolver::solve_patched(const BlockMatrix& hessian, const YarnState& stat
   }
   for (; raised <= most_raises; ++raised, shift = raised_shift(shift)) {
     ++factorisations;
+    const int before = schwarz_.iterations;
     current_ = schwarz_.factor(hessian, shift);
+    iterations += schwarz_.iterations - before;
     if (!current_) continue;
     const ConjugateGradientResult cg =
         conjugate_gradient(hessian, shift, precondition, gradient, accuracy, most_patched, step);

@@ -199,13 +199,13 @@ std::optional<FoundRepeat> repeat_in(const StitchTable& table, int least_seen) {
   part.stitches.assign(table.stitches.begin() + courses.first * table.columns,
                        table.stitches.begin() + (courses.first + courses.size) * table.columns);
   const auto same_columns = [&part](int a, int b) { return columns_alike(part, a, b); };
-  // A period that holds nearly everywhere is the smallest of these; else a longer one must cover clearly more
-  // than a shorter one does.
+  // The smallest period that holds nearly everywhere and is seen twice; else a longer one must cover clearly
+  // more than a shorter one does: a period of nearly all columns holds trivially.
   Stretch wales;
   for (int period = 1; period < table.columns; ++period) {
     const Stretch run = longest_run(table.columns, period, same_columns);
     if (run.size < 2 * period && run.size < period + least_seen) continue;
-    if (run.size >= nearly_all * table.columns) {
+    if (run.size >= nearly_all * table.columns && run.size >= 2 * period) {
       wales = run;
       break;
     }

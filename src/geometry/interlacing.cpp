@@ -15,6 +15,7 @@ constexpr int samples_per_segment = 4;
 // Of a loop's length, from its top: where the neck of its head is, how far its foot reaches, how far yarn may
 // slide.
 constexpr double neck = 0.38, foot_reach = 0.56, most_slide = 0.42, climb_window = 0.1, next_foot = 0.5;
+constexpr double leaning_head = 0.15;
 constexpr double tuck_skirt = 0.12;  // how far below a tuck its surface reaches
 
 // One yarn as a polyline that can be asked beyond its ends where it is periodic.
@@ -278,13 +279,22 @@ InterlacingCheck check_interlacings(const Fabric& fabric) {
       // Where the heads were fitted; if that is not it, yarn may have slid, and they are found anew.
       const LoopWindow &above = child->second, &below = parent->second;
       const int head = top_of_head(below, up), child_head = top_of_head(above, child_up);
+      // Either may have slid without the other. Where a loop leans (lace) its top is not where its head is:
+      // the parent's is looked for a little to both sides as well.
+      const int aside = static_cast<int>(leaning_head * below.loop);
+      const std::array<std::array<int, 2>, 8> readings{{{below.apex, above.apex},
+                                                        {head, child_head},
+                                                        {below.apex, child_head},
+                                                        {head, above.apex},
+                                                        {below.apex - aside, above.apex},
+                                                        {below.apex + aside, above.apex},
+                                                        {head - aside, child_head},
+                                                        {head + aside, child_head}}};
       intact = false;
       for (const bool beyond : {false, true})
-        intact = intact || is_intact(below, below.apex, above, above.apex, beyond, moved, interlacing.sign) ||
-                 is_intact(below, head, above, child_head, beyond, moved, interlacing.sign) ||
-                 (below.tuck &&
-                  (is_intact(below, below.apex, above, above.apex, beyond, moved, interlacing.sign, up) ||
-                   is_intact(below, head, above, child_head, beyond, moved, interlacing.sign, up)));
+        for (const auto& [at, child_at] : readings)
+          intact = intact || is_intact(below, at, above, child_at, beyond, moved, interlacing.sign) ||
+                   (below.tuck && is_intact(below, at, above, child_at, beyond, moved, interlacing.sign, up));
     }
     if (intact)
       ++check.intact;

@@ -136,6 +136,8 @@ SwatchPrediction predict_by_cell(const std::filesystem::path& file, const Swatch
   p.converged = rest.on_machine.converged && relaxed.converged;
   const InterlacingCheck check = check_interlacings(relaxed.fabric);
   p.interlacings = check.expected, p.interlacings_intact = check.intact;
+  const InterlacingCheck at_first = check_interlacings(first);
+  p.is_certified = at_first.intact == at_first.expected && p.pass_throughs == 0;
   const auto inner = [&](double d, int of_cell, int measured) {
     return d * first.diameter_mm / of_cell * measured;
   };

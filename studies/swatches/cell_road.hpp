@@ -18,6 +18,9 @@ struct SwatchPrediction {
   int cell_wales = 0, cell_courses = 0, loops = 0, newton_iterations = 0, pass_throughs = 0;
   int interlacings = 0, interlacings_intact = 0;
   bool converged = false, stretched_converged = false;
+  // Every interlacing was there in the first geometry, and no step let yarn through yarn: whatever the
+  // reading at rest finds, they are there.
+  bool is_certified = false;
   double seconds_knit = 0, seconds_geometry = 0, seconds_relax = 0, seconds_stretch = 0;
   std::string trouble;  // why there is no prediction; else empty
 };

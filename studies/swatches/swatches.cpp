@@ -85,8 +85,7 @@ int predict(const std::filesystem::path& folder, const std::string& name, const 
     cell.trouble = error.what();
   }
   // A prediction there must be: where the cell has none, the net's.
-  const bool whole = cell.trouble.empty() && cell.interlacings_intact == cell.interlacings;
-  if (!whole || !cell.converged) {
+  if (!cell.trouble.empty() || !cell.is_certified || !cell.converged) {
     std::cerr << name << ": " << (cell.trouble.empty() ? "the cell did not come to rest whole" : cell.trouble)
               << "; the net's size is taken\n";
     cell.width_mm = net.width_mm, cell.height_mm = net.height_mm, cell.mass_g = net.mass_g;

@@ -190,7 +190,7 @@ TEST(YarnEnergy, AgreesWithMechanicsOnUniformBSplines) {
   SplineModel model;
   model.yarns = {yarn_of(uniform_b_spline(), q, 0, StretchLaw::mean)};
   model.yarns[0].rest_length[0] *= 0.9;
-  model.yarns[0].evenness = usual_evenness;
+  model.yarns[0].evenness = Stretch{}.evenness;
   model.points = 4;
   std::vector<Vec3> g(4);
   BandHessian band(4);

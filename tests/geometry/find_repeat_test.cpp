@@ -136,6 +136,16 @@ TEST(FindRepeat, LeavesOutWhatTheRegionHasBesideIt) {
   EXPECT_LE(repeat->range.first_slot + repeat->range.wales, 35);
 }
 
+TEST(FindRepeat, IsNotNearlyAllOfTheRegion) {
+  // Three repeats of ten wales between four plain wales on either side: after 34 wales all is alike too, trivially.
+  const Knitted knitted = swatch(42, 16, [](int w, int c) {
+    return w >= 6 && w < 36 && (c % 2 == 0) == ((w - 6) % 10 < 3);
+  });
+  const auto repeat = find_repeat(knitted.graph, inner(knitted.graph, 2, 42));
+  ASSERT_TRUE(repeat);
+  EXPECT_EQ(repeat->range.wales, 10);
+}
+
 TEST(FindRepeat, FindsNoneWhereThereIsNone) {
   std::mt19937 random(20261122);
   std::vector<std::vector<bool>> faces(20, std::vector<bool>(24));
@@ -178,6 +188,7 @@ TEST(FindRepeat, EverySwatchOfTheCorpusHasAWholeCell) {
     }
     const auto repeat = find_repeat(knitted.graph, inside);
     ASSERT_TRUE(repeat) << entry.path().filename();
+    EXPECT_LE(repeat->range.wales, 30) << entry.path().filename();
     const InterlacingCheck check = check_interlacings(cell_of(knitted, *repeat));
     EXPECT_EQ(check.intact, check.expected) << entry.path().filename();
     ++swatches;

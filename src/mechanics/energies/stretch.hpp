@@ -15,14 +15,12 @@
 
 namespace loopwright {
 
-inline constexpr double usual_evenness = 0.005;
-
 struct Stretch {
   static constexpr const char* name = "stretch";
   static constexpr std::size_t dofs = 12;
   double stiffness = 1;    // EA
   double rest_length = 1;  // h
-  double evenness = usual_evenness;
+  double evenness = 0.005;
 
   double energy(const SegmentDofs& x) const {
     double arc = 0, square = 0;

@@ -10,6 +10,7 @@
 #include "notation/fabric_headers.hpp"
 #include "notation/material.hpp"
 #include "notation/read_program.hpp"
+#include "notation/scan.hpp"
 #include "topology/build_yarn_graph.hpp"
 
 namespace loopwright {
@@ -95,6 +96,12 @@ Piece loop_layout_piece(const Knitting& knitting, const PieceRequest& request) {
   fabric.name = knitting.program.settings.name;
   const RelaxOptions options = relax_options(fabric, knitting.program, request);
   return {saved_state(fabric, options, 0), options};
+}
+
+void keep_notation(State& state, std::string text, std::string suffix) {
+  if (first_byte_not_utf8(text) != std::string_view::npos || text.find('\0') != std::string::npos) return;
+  state.texts[state_notation] = std::move(text);
+  state.texts[state_notation_suffix] = std::move(suffix);
 }
 
 Piece piece_of(State state) {

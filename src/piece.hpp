@@ -23,6 +23,8 @@ struct Piece {
 // suffix.
 inline constexpr const char* state_notation = "notation";
 inline constexpr const char* state_notation_suffix = "notation_suffix";
+// Puts it there, unless it is no text in UTF-8.
+void keep_notation(State& state, std::string text, std::string suffix);
 
 // What the caller states instead of the file: a sweep over loop lengths, the yarn of a knitout file that
 // names none. In the words of a fabric file's headers: {"Loop-Length", "5.9 mm"}

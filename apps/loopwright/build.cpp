@@ -34,10 +34,11 @@ int run(const BuildCommand& command) {
   fabric_format(command.out);
   require_writable(command.out);
   require_writable(command.json);
-  const std::optional<Piece> piece =
+  std::optional<Piece> piece =
       command.layout == "loop" ? read_relaxed_layout(command) : read_piece(command.file, command.piece);
   if (!piece) return exit_error;
   const Assessment assessment = assess(piece->state.fabric);
+  keep_notation(command.file, piece->state);
   write_fabric(command.out, piece->state);
   if (!command.json.empty()) write_json(command.json, results(assessment));
   people(command.json) << command.file << ": " << summary(assessment) << '\n';

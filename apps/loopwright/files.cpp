@@ -94,10 +94,7 @@ void keep_notation(const std::string& file, State& state) {
   if (names_a_state(file) || names_curves(file)) return;
   Diagnostics unread;
   std::optional<std::string> text = read_text(file, unread);
-  if (!text || first_byte_not_utf8(*text) != std::string_view::npos || text->find('\0') != std::string::npos)
-    return;
-  state.texts[state_notation] = std::move(*text);
-  state.texts[state_notation_suffix] = std::filesystem::path(file).extension().string();
+  if (text) keep_notation(state, std::move(*text), std::filesystem::path(file).extension().string());
 }
 
 void require_writable(const std::string& file) {

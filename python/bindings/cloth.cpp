@@ -4,8 +4,9 @@
 
 namespace loopwright::python {
 
-Cloth::Cloth(RelaxRun run) : linked_before_(std::move(run.linked_before)) {
+Cloth::Cloth(RelaxRun run, const State& before) : linked_before_(std::move(run.linked_before)) {
   piece_.state = saved_state(run);
+  piece_.state.texts = before.texts;
   piece_.options = std::move(run.options);
   RelaxResult& result = run.result;
   // ready to be gone on with: friction keeps its history, plates stand where they are

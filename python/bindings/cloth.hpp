@@ -12,8 +12,8 @@ namespace loopwright::python {
 class Cloth {
  public:
   explicit Cloth(Piece piece) : piece_(std::move(piece)) {}
-  // At rest, or as near to it as the run came.
-  explicit Cloth(RelaxRun run);
+  // At rest, or as near to it as the run came from the state before, whose notation it keeps.
+  Cloth(RelaxRun run, const State& before);
 
   const Piece& piece() const { return piece_; }
   const State& state() const { return piece_.state; }

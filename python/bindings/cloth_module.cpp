@@ -94,7 +94,7 @@ ClothPointer relax(const Cloth& cloth, std::optional<double> friction, bool let_
     });
     // what was asked of this run alone
     run.options.most_iterations = cloth.piece().options.most_iterations;
-    return std::make_shared<Cloth>(std::move(run));
+    return std::make_shared<Cloth>(std::move(run), cloth.state());
   });
   watch.raise();
   warn_of(*relaxed);

@@ -200,7 +200,7 @@ ClothPointer relax_as_knitted_cloth(const Cloth& cloth, double machine_width_mm,
     run.result.converged = run.result.converged && rest.on_machine.converged;
     run.radius = run.result.stopped ? 0 : 1;
     run.linked_before = linking_numbers(cloth.fabric());
-    return std::make_shared<Cloth>(std::move(run));
+    return std::make_shared<Cloth>(std::move(run), cloth.state());
   });
   watch.raise();
   warn_of(*relaxed);

@@ -55,10 +55,13 @@ class ReadProgram {
     const Knitting knitting = knit(request.periodic, diagnostics);
     if (diagnostics.ok()) {
       try {
-        if (loop_layout) return loop_layout_piece(knitting, request);
-        return first_piece(knitting, request, [&watch](const RelaxProgress& progress) {
-          return watch.goes_on("relaxed repeat", 0, progress.newton_iterations, progress.residual);
-        });
+        Piece piece = loop_layout ? loop_layout_piece(knitting, request)
+                                  : first_piece(knitting, request, [&watch](const RelaxProgress& progress) {
+                                      return watch.goes_on("relaxed repeat", 0, progress.newton_iterations,
+                                                           progress.residual);
+                                    });
+        keep_notation(piece.state, text_, suffix_);
+        return piece;
       } catch (const std::invalid_argument& fault) {
         diagnostics.error({}, fault.what());
       }

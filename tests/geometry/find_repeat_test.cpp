@@ -137,10 +137,10 @@ TEST(FindRepeat, LeavesOutWhatTheRegionHasBesideIt) {
 }
 
 TEST(FindRepeat, IsNotNearlyAllOfTheRegion) {
-  // Three repeats of ten wales between four plain wales on either side: after 34 wales all is alike too, trivially.
-  const Knitted knitted = swatch(42, 16, [](int w, int c) {
-    return w >= 6 && w < 36 && (c % 2 == 0) == ((w - 6) % 10 < 3);
-  });
+  // Three repeats of ten wales between four plain wales on either side: after 34 wales all is alike too,
+  // trivially.
+  const Knitted knitted =
+      swatch(42, 16, [](int w, int c) { return w >= 6 && w < 36 && (c % 2 == 0) == ((w - 6) % 10 < 3); });
   const auto repeat = find_repeat(knitted.graph, inner(knitted.graph, 2, 42));
   ASSERT_TRUE(repeat);
   EXPECT_EQ(repeat->range.wales, 10);

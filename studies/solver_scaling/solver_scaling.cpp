@@ -20,7 +20,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-double peak_MB() {
+double peak_MiB() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<double>(usage.ru_maxrss) / 1024;
@@ -30,7 +30,7 @@ void print_row(const char* what, std::size_t loops, const RelaxResult& r, double
   const InterlacingCheck check = check_interlacings(r.fabric);
   std::printf("%-8s %7zu  %3d %6.1f %3d  %8.2f %7.2f  %7.0f  %s %d/%d %d\n", what, loops, r.newton_iterations,
               r.newton_iterations > 0 ? static_cast<double>(r.linear_iterations) / r.newton_iterations : 0,
-              r.factorisations, seconds, 1e3 * seconds / static_cast<double>(loops), peak_MB(),
+              r.factorisations, seconds, 1e3 * seconds / static_cast<double>(loops), peak_MiB(),
               r.converged ? "rest" : "NOT AT REST", check.intact, check.expected, r.pass_throughs);
   std::fflush(stdout);
 }
@@ -84,7 +84,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: study_solver_scaling FILE.verm N...\n");
     return 2;
   }
-  std::printf("%s\n            loops  Newton its/step factors  seconds ms/loop peak MB\n", argv[1]);
+  std::printf("%s\n            loops  Newton its/step factors  seconds ms/loop peak MiB\n", argv[1]);
   int status = 0;
   for (int k = 2; k < argc; ++k) status = std::max(status, run(argv[1], std::atoi(argv[k])));
   return status;

@@ -6,10 +6,7 @@
 
 #include "base/stop.hpp"
 #include "cloth_file_job.hpp"
-#include "machine/run_machine.hpp"
 #include "moment_teller.hpp"
-#include "notation/read_program.hpp"
-#include "topology/build_yarn_graph.hpp"
 
 namespace loopwright {
 namespace {
@@ -139,11 +136,7 @@ class ClothJob {
 }  // namespace
 
 Knitting knit_text(const ClothRequest& request, const FabricOptions& options, Diagnostics& diagnostics) {
-  Knitting knitting;
-  knitting.program = read_program_text(request.text, request.suffix, diagnostics, options);
-  knitting.record = run_machine(knitting.program, diagnostics);
-  knitting.graph = build_yarn_graph(knitting.program, knitting.record, diagnostics);
-  return knitting;
+  return knit_text(request.text, request.suffix, options, {}, diagnostics);
 }
 
 void make_cloth(const ClothRequest& request, const std::atomic<bool>& cancelled, const ShowMoment& show) {

@@ -48,6 +48,14 @@ struct Partial {
   Block corner{};
 };
 
+void clear_values(BlockMatrix& matrix) {
+  matrix.block.assign(matrix.column.size(), Block{});
+  matrix.border.assign(static_cast<std::size_t>(matrix.rows()), Block{});
+  matrix.corner = {};
+}
+
+constexpr int few_nodes = 400;  // for which a table of all places in the matrix is cheap (640 kB)
+
 // Chunks are ranges of control points that depend on the fabric alone.
 int chunk_count(int nodes) { return std::clamp(nodes / 3000, 1, 16); }
 
@@ -166,6 +174,26 @@ void Assembly::build_pattern(BlockMatrix& matrix) const {
         }
     }
   };
+  if (model_.nodes <= few_nodes) {
+    // Few control points: a table of all blocks says where each one is, and nothing need be sorted.
+    matrix.places.assign(nodes * nodes, -1);
+    each_block([&](std::int32_t i, std::int32_t j) {
+      matrix.places[static_cast<std::size_t>(i) * nodes + static_cast<std::size_t>(j)] = 0;
+    });
+    matrix.row_start.assign(nodes + 1, 0);
+    matrix.column.clear();
+    for (std::size_t i = 0; i < nodes; ++i) {
+      for (std::size_t j = 0; j < nodes; ++j)
+        if (std::int32_t& at = matrix.places[i * nodes + j]; at == 0) {
+          at = static_cast<std::int32_t>(matrix.column.size());
+          matrix.column.push_back(static_cast<std::int32_t>(j));
+        }
+      matrix.row_start[i + 1] = static_cast<std::int32_t>(matrix.column.size());
+    }
+    clear_values(matrix);
+    return;
+  }
+  matrix.places.clear();
   each_block([&](std::int32_t i, std::int32_t) { ++start[static_cast<std::size_t>(i) + 1]; });
   for (std::size_t i = 0; i < nodes; ++i) start[i + 1] += start[i];
   std::vector<std::int32_t> columns(static_cast<std::size_t>(start[nodes])),
@@ -187,9 +215,7 @@ void Assembly::build_pattern(BlockMatrix& matrix) const {
   }
   matrix.column.assign(columns.begin(), columns.begin() + static_cast<std::ptrdiff_t>(kept));
   std::vector<std::int32_t>().swap(columns);
-  matrix.block.assign(matrix.column.size(), Block{});
-  matrix.border.assign(nodes, Block{});
-  matrix.corner = {};
+  clear_values(matrix);
 }
 
 void Assembly::metric(BlockMatrix& matrix) const {

@@ -48,6 +48,16 @@ struct Partial {
   Block corner{};
 };
 
+// to[k][l] += weight[k] weight[l] hessian for k <= l
+void add_weighted(const std::array<double, 4>& weight, const Symmetric3& hessian,
+                  std::array<std::array<Symmetric3, 4>, 4>& to) {
+  for (std::size_t k = 0; k < 4; ++k)
+    for (std::size_t l = k; l < 4; ++l) {
+      const double w = weight[k] * weight[l];
+      for (std::size_t d = 0; d < 6; ++d) to[k][l][d] += w * hessian[d];
+    }
+}
+
 void clear_values(BlockMatrix& matrix) {
   matrix.block.assign(matrix.column.size(), Block{});
   matrix.border.assign(static_cast<std::size_t>(matrix.rows()), Block{});
@@ -384,9 +394,13 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
                         b0 = static_cast<std::size_t>(pair.b * model_.samples);
       const YarnModel::Yarn& ya = model_.yarn_of(pair.a);
       const YarnModel::Yarn& yb = model_.yarn_of(pair.b);
+      const Vec3 image = state.lattice(pair.m, pair.n);
+      const double scale = law_scale(pair.a, pair.b), reach = model_.contact.outer * scale;
+      if (squared_distance(places_.boxes[static_cast<std::size_t>(pair.a)], {image.x, image.y, image.z},
+                           places_.boxes[static_cast<std::size_t>(pair.b)]) >= reach * reach)
+        continue;
       ContactPairInput in{{&places_.x[a0], &places_.y[a0], &places_.z[a0]},
                           {&places_.x[b0], &places_.y[b0], &places_.z[b0]}};
-      const Vec3 image = state.lattice(pair.m, pair.n);
       in.image = {image.x, image.y, image.z};
       in.box_b = &places_.boxes[static_cast<std::size_t>(pair.b)];
       in.count = model_.samples;
@@ -396,7 +410,6 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
         in.spacing = ya.rest_length / model_.samples;
         in.excluded = model_.excluded * ya.diameter;
       }
-      const double scale = law_scale(pair.a, pair.b);
       const ContactLaw law = scale == 1 ? model_.contact : model_.contact.scaled(scale);
       if (!gradient) {
         sums.energy.contact += contact_energy(in, law);
@@ -452,8 +465,8 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
         Vec3 ga = rub.law.weight_a[k] * rub_force, gb = -rub.law.weight_b[k] * rub_force;
         for (std::size_t i = 0; i < n; ++i) {
           const double w = model_.weights[i][k];
-          ga += w * Vec3{out.gradient_a[i][0], out.gradient_a[i][1], out.gradient_a[i][2]};
-          gb += w * Vec3{out.gradient_b[i][0], out.gradient_b[i][1], out.gradient_b[i][2]};
+          if (out.touched_a[i]) ga += w * Vec3{out.gradient_a[i][0], out.gradient_a[i][1], out.gradient_a[i][2]};
+          if (out.touched_b[i]) gb += w * Vec3{out.gradient_b[i][0], out.gradient_b[i][1], out.gradient_b[i][2]};
         }
         add_gradient(fa + k, ga, whole);
         add_gradient(fb + k, gb, whole);
@@ -464,24 +477,26 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
         }
       }
       if (!matrix) continue;
+      // The sides' own blocks are symmetric in their control points.
+      std::array<std::array<Symmetric3, 4>, 4> aa, bb;
+      for (std::size_t k = 0; k < 4; ++k)
+        for (std::size_t l = k; l < 4; ++l)
+          for (std::size_t d = 0; d < 6; ++d) {
+            aa[k][l][d] = rub.law.weight_a[k] * rub.law.weight_a[l] * rub_stiffness[d];
+            bb[k][l][d] = rub.law.weight_b[k] * rub.law.weight_b[l] * rub_stiffness[d];
+          }
+      for (std::size_t i = 0; i < n; ++i) {
+        if (out.touched_a[i]) add_weighted(model_.weights[i], out.hessian_a[i], aa);
+        if (out.touched_b[i]) add_weighted(model_.weights[i], out.hessian_b[i], bb);
+      }
       for (std::size_t k = 0; k < 4; ++k)
         for (std::size_t l = 0; l < 4; ++l) {
-          Symmetric3 aa{}, bb{}, ab = out.between[k][l];
-          for (std::size_t d = 0; d < 6; ++d) {
-            aa[d] = rub.law.weight_a[k] * rub.law.weight_a[l] * rub_stiffness[d];
-            bb[d] = rub.law.weight_b[k] * rub.law.weight_b[l] * rub_stiffness[d];
+          Symmetric3 ab = out.between[k][l];
+          for (std::size_t d = 0; d < 6; ++d)
             ab[d] -= rub.law.weight_a[k] * rub.law.weight_b[l] * rub_stiffness[d];
-          }
-          for (std::size_t i = 0; i < n; ++i) {
-            const double w = model_.weights[i][k] * model_.weights[i][l];
-            for (std::size_t d = 0; d < 6; ++d) {
-              aa[d] += w * out.hessian_a[i][d];
-              bb[d] += w * out.hessian_b[i][d];
-            }
-          }
           const Block between = unpacked(ab);
-          add_block(fa + k, fa + l, unpacked(aa), frac_a[k], frac_a[l]);
-          add_block(fb + k, fb + l, unpacked(bb), frac_b[k], frac_b[l]);
+          add_block(fa + k, fa + l, unpacked(k <= l ? aa[k][l] : aa[l][k]), frac_a[k], frac_a[l]);
+          add_block(fb + k, fb + l, unpacked(k <= l ? bb[k][l] : bb[l][k]), frac_b[k], frac_b[l]);
           add_block(fa + k, fb + l, between, frac_a[k], frac_b[l]);
           add_block(fb + l, fa + k, transposed(between), frac_b[l], frac_a[k]);
         }

@@ -40,14 +40,13 @@ double smallest_distance2(const YarnModel& model, const SamplePlaces& p, int a, 
              j0 = static_cast<std::size_t>(b * model.samples);
   const auto count = static_cast<std::size_t>(model.samples);
   const SampleBox& box = p.boxes[static_cast<std::size_t>(b)];
+  const SampleView others{&p.x[j0], &p.y[j0], &p.z[j0]};
+  std::array<double, most_contact_samples> d2;
   double nearest = beyond2;
   for (std::size_t i = i0; i < i0 + count; ++i) {
     const double x = p.x[i] - image.x, y = p.y[i] - image.y, z = p.z[i] - image.z;
     if (squared_distance(x, y, z, box) >= nearest) continue;
-    for (std::size_t j = j0; j < j0 + count; ++j) {
-      const double dx = x - p.x[j], dy = y - p.y[j], dz = z - p.z[j], d2 = dx * dx + dy * dy + dz * dz;
-      nearest = d2 < nearest ? d2 : nearest;
-    }
+    nearest = squared_distances(x, y, z, others, count, nearest, d2.data());
   }
   return nearest;
 }

@@ -44,6 +44,32 @@ inline double squared_distance(double x, double y, double z, const SampleBox& bo
   return dx * dx + dy * dy + dz * dz;
 }
 
+// Of a box, moved by -image, from another; 0 where they overlap.
+inline double squared_distance(const SampleBox& a, const std::array<double, 3>& image, const SampleBox& b) {
+  double sum = 0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double apart = std::max({b.low[c] - (a.high[c] - image[c]), (a.low[c] - image[c]) - b.high[c], 0.0});
+    sum += apart * apart;
+  }
+  return sum;
+}
+
+// Of a place from n others, into d2; returns the least of them and `beyond2`. Four running minima, so that none
+// waits for the one before it.
+inline double squared_distances(double x, double y, double z, const SampleView& others, std::size_t n,
+                                double beyond2, double* d2) {
+  for (std::size_t j = 0; j < n; ++j) {
+    const double dx = x - others.x[j], dy = y - others.y[j], dz = z - others.z[j];
+    d2[j] = dx * dx + dy * dy + dz * dz;
+  }
+  std::array<double, 4> least{beyond2, beyond2, beyond2, beyond2};
+  std::size_t j = 0;
+  for (; j + 4 <= n; j += 4)
+    for (std::size_t l = 0; l < 4; ++l) least[l] = d2[j + l] < least[l] ? d2[j + l] : least[l];
+  for (; j < n; ++j) least[0] = d2[j] < least[0] ? d2[j] : least[0];
+  return std::min(std::min(least[0], least[1]), std::min(least[2], least[3]));
+}
+
 struct ContactPairInput {
   SampleView a, b;
   std::array<double, 3> image{};     // added to b's places (lattice image)
@@ -59,6 +85,7 @@ struct ContactPairInput {
 struct ContactPairOutput {
   double energy = 0;
   bool active = false;
+  std::array<bool, most_contact_samples> touched_a, touched_b;  // samples in contact; the rest are all zero
   std::array<std::array<double, 3>, most_contact_samples> gradient_a, gradient_b;
   std::array<Symmetric3, most_contact_samples> hessian_a, hessian_b;
   std::array<std::array<Symmetric3, 4>, 4> between;  // d2U / dq_a dq_b (symmetric 3 x 3)
@@ -81,14 +108,8 @@ inline double contact_energy(const ContactPairInput& in, const ContactLaw& law) 
     const double px = in.a.x[i] - in.image[0], py = in.a.y[i] - in.image[1], pz = in.a.z[i] - in.image[2];
     if (in.box_b && squared_distance(px, py, pz, *in.box_b) >= outer2) continue;
     std::array<double, most_contact_samples> d2;
-    double nearest = outer2;
-    for (int j = 0; j < in.count; ++j) {
-      const double dx = px - in.b.x[j], dy = py - in.b.y[j], dz = pz - in.b.z[j];
-      const double v = dx * dx + dy * dy + dz * dz;
-      d2[static_cast<std::size_t>(j)] = v;
-      nearest = v < nearest ? v : nearest;
-    }
-    if (nearest >= outer2) continue;
+    const auto n = static_cast<std::size_t>(in.count);
+    if (squared_distances(px, py, pz, in.b, n, outer2, d2.data()) >= outer2) continue;
     for (int j = 0; j < in.count; ++j) {
       const double v = d2[static_cast<std::size_t>(j)];
       if (v >= outer2) continue;
@@ -111,13 +132,7 @@ inline void contact_terms(const ContactPairInput& in, const ContactLaw& law, con
     const double px = in.a.x[i] - in.image[0], py = in.a.y[i] - in.image[1], pz = in.a.z[i] - in.image[2];
     if (in.box_b && squared_distance(px, py, pz, *in.box_b) >= outer2) continue;
     std::array<double, most_contact_samples> d2;
-    double nearest = outer2;
-    for (std::size_t j = 0; j < n; ++j) {
-      const double dx = px - in.b.x[j], dy = py - in.b.y[j], dz = pz - in.b.z[j];
-      d2[j] = dx * dx + dy * dy + dz * dz;
-      nearest = d2[j] < nearest ? d2[j] : nearest;
-    }
-    if (nearest >= outer2) continue;
+    if (squared_distances(px, py, pz, in.b, n, outer2, d2.data()) >= outer2) continue;
     std::array<Symmetric3, 4> row{};  // sum over j of h_b(j) K_ij
     bool row_active = false;
     for (std::size_t j = 0; j < n; ++j) {
@@ -130,10 +145,11 @@ inline void contact_terms(const ContactPairInput& in, const ContactLaw& law, con
         for (std::size_t k = 0; k < n; ++k) {
           out.gradient_a[k] = out.gradient_b[k] = {};
           out.hessian_a[k] = out.hessian_b[k] = {};
+          out.touched_a[k] = out.touched_b[k] = false;
         }
         out.between = {};
       }
-      row_active = true;
+      row_active = out.touched_a[i] = out.touched_b[j] = true;
       const double D = std::sqrt(d2[j]), inv = 1 / D;
       const ContactLaw::Value v = law(D);
       out.energy += in.weight * v.energy;

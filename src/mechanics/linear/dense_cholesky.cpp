@@ -15,6 +15,12 @@ extern "C" void openblas_set_num_threads(int) __attribute__((weak));
 
 namespace loopwright {
 
+DenseCholesky::DenseCholesky() {
+#ifdef LOOPWRIGHT_HAS_CHOLMOD
+  if (openblas_set_num_threads) openblas_set_num_threads(1);
+#endif
+}
+
 bool DenseCholesky::factor(const BlockMatrix& m, double shift) {
   order_ = 3 * m.rows() + 3;
   const auto order = static_cast<std::size_t>(order_), rows = static_cast<std::size_t>(m.rows());
@@ -38,7 +44,6 @@ bool DenseCholesky::factor(const BlockMatrix& m, double shift) {
     for (std::size_t l = k; l < 3; ++l)
       column(3 * rows + k)[3 * rows + l] = m.corner[3 * k + l] + (k == l ? shift * m.measure_metric[k] : 0);
 #ifdef LOOPWRIGHT_HAS_CHOLMOD
-  if (openblas_set_num_threads) openblas_set_num_threads(1);
   int info = 0;
   dpotrf_("L", &order_, entry_.data(), &order_, &info);
   return info == 0;

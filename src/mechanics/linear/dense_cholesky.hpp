@@ -11,6 +11,7 @@ namespace loopwright {
 
 class DenseCholesky {
  public:
+  DenseCholesky();
   // False if the matrix is not positive definite.
   bool factor(const BlockMatrix& matrix, double shift);
   // x = M^-1 b for the matrix of the last successful factor().

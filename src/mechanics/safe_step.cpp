@@ -157,7 +157,7 @@ SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnS
     const std::size_t begin = static_cast<std::size_t>(c) * pairs_per_chunk,
                       end = std::min(pairs.size(), begin + pairs_per_chunk);
     Worst& w = worst[static_cast<std::size_t>(c)];
-    for (std::size_t k = begin; k < end; ++k) {
+    const auto examine = [&](std::size_t k, double most_motion2) {
       const SegmentPair& pair = pairs[k];
       const Vec3 image = state.lattice(pair.m, pair.n), moved_image = target.lattice(pair.m, pair.n) - image;
       const YarnModel::Yarn& yarn = model.yarn_of(pair.a);
@@ -174,12 +174,7 @@ SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnS
         return distance2 > 9 * halves * halves &&
                2 * (motion2 + turns * turns) <= 0.44 * w.ratio2 * distance2;
       };
-      const double most_motion =
-          norm(one_motion.mean - moved_image - other_motion.mean) + one_motion.spread + other_motion.spread;
-      if (harmless(squared_distance(from.boxes[static_cast<std::size_t>(pair.a)], {image.x, image.y, image.z},
-                                    other_box),
-                   most_motion * most_motion))
-        continue;
+      if (harmless(pair.distance2, most_motion2)) return;
       const SampleView others{&from.x[j0], &from.y[j0], &from.z[j0]};
       std::array<double, most_contact_samples> d2, r2;
       std::array<Stick, most_contact_samples> other_sticks;
@@ -221,7 +216,26 @@ SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnS
           }
         }
       }
+    };
+    // The pair with the most motion for its distance goes first. It is nearly always the worst, and most others
+    // are then seen to be harmless at once.
+    std::vector<double> most_motion2(end - begin);
+    std::size_t first = begin;
+    double first_share = -1;
+    for (std::size_t k = begin; k < end; ++k) {
+      const SegmentPair& pair = pairs[k];
+      const SegmentMotion &one = motions[static_cast<std::size_t>(pair.a)],
+                          &other = motions[static_cast<std::size_t>(pair.b)];
+      const Vec3 moved_image = target.lattice(pair.m, pair.n) - state.lattice(pair.m, pair.n);
+      const double motion = norm(one.mean - moved_image - other.mean) + one.spread + other.spread;
+      most_motion2[k - begin] = motion * motion;
+      if (pair.same_yarn || !(motion * motion > first_share * pair.distance2)) continue;
+      first = k;
+      first_share = motion * motion / pair.distance2;
     }
+    if (begin < end) examine(first, most_motion2[first - begin]);
+    for (std::size_t k = begin; k < end; ++k)
+      if (k != first) examine(k, most_motion2[k - begin]);
   });
 
   SafeStep result;

@@ -41,13 +41,21 @@ double smallest_distance2(const YarnModel& model, const SamplePlaces& p, int a, 
   const auto count = static_cast<std::size_t>(model.samples);
   const SampleBox& box = p.boxes[static_cast<std::size_t>(b)];
   const SampleView others{&p.x[j0], &p.y[j0], &p.z[j0]};
-  std::array<double, most_contact_samples> d2;
+  std::array<double, most_contact_samples> to_box2{}, d2;
+  for (std::size_t i = 0; i < count; ++i)
+    to_box2[i] = squared_distance(p.x[i0 + i] - image.x, p.y[i0 + i] - image.y, p.z[i0 + i] - image.z, box);
+  // The sample nearest to the box first: most others then need not be looked at.
+  const auto first = static_cast<std::size_t>(
+      std::min_element(to_box2.begin(), to_box2.begin() + static_cast<std::ptrdiff_t>(count)) - to_box2.begin());
   double nearest = beyond2;
-  for (std::size_t i = i0; i < i0 + count; ++i) {
-    const double x = p.x[i] - image.x, y = p.y[i] - image.y, z = p.z[i] - image.z;
-    if (squared_distance(x, y, z, box) >= nearest) continue;
-    nearest = squared_distances(x, y, z, others, count, nearest, d2.data());
-  }
+  const auto look_at = [&](std::size_t i) {
+    if (to_box2[i] >= nearest) return;
+    nearest = squared_distances(p.x[i0 + i] - image.x, p.y[i0 + i] - image.y, p.z[i0 + i] - image.z, others,
+                                count, nearest, d2.data());
+  };
+  look_at(first);
+  for (std::size_t i = 0; i < count; ++i)
+    if (i != first) look_at(i);
   return nearest;
 }
 

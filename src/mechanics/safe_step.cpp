@@ -157,6 +157,7 @@ SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnS
     const std::size_t begin = static_cast<std::size_t>(c) * pairs_per_chunk,
                       end = std::min(pairs.size(), begin + pairs_per_chunk);
     Worst& w = worst[static_cast<std::size_t>(c)];
+    std::array<Stick, most_contact_samples> other_sticks;
     const auto examine = [&](std::size_t k, double most_motion2) {
       const SegmentPair& pair = pairs[k];
       const Vec3 image = state.lattice(pair.m, pair.n), moved_image = target.lattice(pair.m, pair.n) - image;
@@ -177,7 +178,6 @@ SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnS
       if (harmless(pair.distance2, most_motion2)) return;
       const SampleView others{&from.x[j0], &from.y[j0], &from.z[j0]};
       std::array<double, most_contact_samples> d2, r2;
-      std::array<Stick, most_contact_samples> other_sticks;
       bool has_other_sticks = false;
       for (std::size_t i = 0; i < count; ++i) {
         const double x = from.x[i0 + i] - image.x, y = from.y[i0 + i] - image.y, z = from.z[i0 + i] - image.z;
@@ -207,7 +207,7 @@ SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnS
               stick_distance2({x - others.x[j], y - others.y[j], z - others.z[j]}, one.half, other.half);
           w.gap2 = std::min(w.gap2, gap2);
           // Yarn bends away from its sticks: see `bent_away`. Below twice that half the gap is left for it.
-          const double gap = std::sqrt(gap2), room = std::max({gap - bent_away, 0.5 * gap, 1e-9});
+          const double gap = std::sqrt(gap2), room = std::max(std::max(gap - bent_away, 0.5 * gap), 1e-9);
           const double room2 = room * room;
           if (motion * motion > w.ratio2 * room2) {
             w.ratio2 = motion * motion / room2;

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "mechanics/energies/energy.hpp"
@@ -38,9 +39,9 @@ struct SampleBox {
 
 // Of a place from a box; 0 inside.
 inline double squared_distance(double x, double y, double z, const SampleBox& box) {
-  const double dx = std::max({box.low[0] - x, x - box.high[0], 0.0}),
-               dy = std::max({box.low[1] - y, y - box.high[1], 0.0}),
-               dz = std::max({box.low[2] - z, z - box.high[2], 0.0});
+  const double dx = std::max(std::max(box.low[0] - x, x - box.high[0]), 0.0),
+               dy = std::max(std::max(box.low[1] - y, y - box.high[1]), 0.0),
+               dz = std::max(std::max(box.low[2] - z, z - box.high[2]), 0.0);
   return dx * dx + dy * dy + dz * dz;
 }
 
@@ -48,26 +49,41 @@ inline double squared_distance(double x, double y, double z, const SampleBox& bo
 inline double squared_distance(const SampleBox& a, const std::array<double, 3>& image, const SampleBox& b) {
   double sum = 0;
   for (std::size_t c = 0; c < 3; ++c) {
-    const double apart = std::max({b.low[c] - (a.high[c] - image[c]), (a.low[c] - image[c]) - b.high[c], 0.0});
+    const double apart =
+        std::max(std::max(b.low[c] - (a.high[c] - image[c]), (a.low[c] - image[c]) - b.high[c]), 0.0);
     sum += apart * apart;
   }
   return sum;
 }
 
-// Of a place from n others, into d2; returns the least of them and `beyond2`. Four running minima, so that none
-// waits for the one before it.
+// Of a place from n others, into d2; returns the least of them and `beyond2`. Two at a time, in four running
+// minima, so that none waits for the one before it.
 inline double squared_distances(double x, double y, double z, const SampleView& others, std::size_t n,
                                 double beyond2, double* d2) {
-  for (std::size_t j = 0; j < n; ++j) {
+  using Two = double __attribute__((vector_size(16)));
+  const auto two = [](const double* p) {
+    Two v;
+    std::memcpy(&v, p, sizeof v);
+    return v;
+  };
+  Two least_even{beyond2, beyond2}, least_odd = least_even;
+  const auto pair_of = [&](std::size_t j, Two& least) {
+    const Two dx = x - two(others.x + j), dy = y - two(others.y + j), dz = z - two(others.z + j);
+    const Two v = dx * dx + dy * dy + dz * dz;
+    std::memcpy(d2 + j, &v, sizeof v);
+    least = v < least ? v : least;
+  };
+  std::size_t j = 0;
+  for (; j + 4 <= n; j += 4) {
+    pair_of(j, least_even);
+    pair_of(j + 2, least_odd);
+  }
+  for (; j < n; ++j) {
     const double dx = x - others.x[j], dy = y - others.y[j], dz = z - others.z[j];
     d2[j] = dx * dx + dy * dy + dz * dz;
+    least_even[0] = d2[j] < least_even[0] ? d2[j] : least_even[0];
   }
-  std::array<double, 4> least{beyond2, beyond2, beyond2, beyond2};
-  std::size_t j = 0;
-  for (; j + 4 <= n; j += 4)
-    for (std::size_t l = 0; l < 4; ++l) least[l] = d2[j + l] < least[l] ? d2[j + l] : least[l];
-  for (; j < n; ++j) least[0] = d2[j] < least[0] ? d2[j] : least[0];
-  return std::min(std::min(least[0], least[1]), std::min(least[2], least[3]));
+  return std::min(std::min(least_even[0], least_even[1]), std::min(least_odd[0], least_odd[1]));
 }
 
 struct ContactPairInput {

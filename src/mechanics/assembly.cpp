@@ -465,8 +465,10 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
         Vec3 ga = rub.law.weight_a[k] * rub_force, gb = -rub.law.weight_b[k] * rub_force;
         for (std::size_t i = 0; i < n; ++i) {
           const double w = model_.weights[i][k];
-          if (out.touched_a[i]) ga += w * Vec3{out.gradient_a[i][0], out.gradient_a[i][1], out.gradient_a[i][2]};
-          if (out.touched_b[i]) gb += w * Vec3{out.gradient_b[i][0], out.gradient_b[i][1], out.gradient_b[i][2]};
+          if (out.touched_a[i])
+            ga += w * Vec3{out.gradient_a[i][0], out.gradient_a[i][1], out.gradient_a[i][2]};
+          if (out.touched_b[i])
+            gb += w * Vec3{out.gradient_b[i][0], out.gradient_b[i][1], out.gradient_b[i][2]};
         }
         add_gradient(fa + k, ga, whole);
         add_gradient(fb + k, gb, whole);

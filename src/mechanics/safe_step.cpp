@@ -217,8 +217,8 @@ SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnS
         }
       }
     };
-    // The pair with the most motion for its distance goes first. It is nearly always the worst, and most others
-    // are then seen to be harmless at once.
+    // The pair with the most motion for its distance goes first. It is nearly always the worst, and most
+    // others are then seen to be harmless at once.
     std::vector<double> most_motion2(end - begin);
     std::size_t first = begin;
     double first_share = -1;

@@ -46,7 +46,8 @@ double smallest_distance2(const YarnModel& model, const SamplePlaces& p, int a, 
     to_box2[i] = squared_distance(p.x[i0 + i] - image.x, p.y[i0 + i] - image.y, p.z[i0 + i] - image.z, box);
   // The sample nearest to the box first: most others then need not be looked at.
   const auto first = static_cast<std::size_t>(
-      std::min_element(to_box2.begin(), to_box2.begin() + static_cast<std::ptrdiff_t>(count)) - to_box2.begin());
+      std::min_element(to_box2.begin(), to_box2.begin() + static_cast<std::ptrdiff_t>(count)) -
+      to_box2.begin());
   double nearest = beyond2;
   const auto look_at = [&](std::size_t i) {
     if (to_box2[i] >= nearest) return;

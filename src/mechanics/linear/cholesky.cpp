@@ -15,8 +15,9 @@
 // OpenBLAS, if that is the BLAS in use: its threads would fight with ours, and results must not depend on
 // their number.
 extern "C" void openblas_set_num_threads(int) __attribute__((weak));
-// CHOLMOD asks for four OpenMP threads at every loop of a factor, whatever OMP_NUM_THREADS says: only a limit of
-// no active level holds it to the calling thread (OpenMP 5.0, 3.2.15; weak: a CHOLMOD without OpenMP has neither).
+// CHOLMOD asks for four OpenMP threads at every loop of a factor, whatever OMP_NUM_THREADS says: only a limit
+// of no active level holds it to the calling thread (OpenMP 5.0, 3.2.15; weak: a CHOLMOD without OpenMP has
+// neither).
 extern "C" void omp_set_max_active_levels(int) __attribute__((weak));
 extern "C" int omp_get_max_active_levels() __attribute__((weak));
 #endif

@@ -31,8 +31,8 @@ bool DenseCholesky::factor(const BlockMatrix& m, double shift) {
     for (std::size_t r = 0; r < 3; ++r) {
       double* to = column(3 * i + r);
       std::fill(to + 3 * i, to + order, 0.0);
-      for (auto k = static_cast<std::size_t>(m.row_start[i]); k < static_cast<std::size_t>(m.row_start[i + 1]);
-           ++k) {
+      for (auto k = static_cast<std::size_t>(m.row_start[i]);
+           k < static_cast<std::size_t>(m.row_start[i + 1]); ++k) {
         const auto j = static_cast<std::size_t>(m.column[k]);
         if (j < i) continue;
         for (std::size_t c = 0; c < 3; ++c) to[3 * j + c] = m.block[k][3 * r + c];

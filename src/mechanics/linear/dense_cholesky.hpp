@@ -1,7 +1,8 @@
-// Cholesky factorisation of a bordered block matrix plus a multiple of its metric (see cholesky.hpp), all entries
-// kept: for cells of a few loops. Every loop of such a cell touches most others or their images, so that a sparse
-// factor fills up anyway, and finding its pattern anew whenever a contact comes or goes takes longer than the
-// factor. The border is the last three rows. LAPACK where CHOLMOD was found (which needs it too), otherwise Eigen.
+// Cholesky factorisation of a bordered block matrix plus a multiple of its metric (see cholesky.hpp), all
+// entries kept: for cells of a few loops. Every loop of such a cell touches most others or their images, so
+// that a sparse factor fills up anyway, and finding its pattern anew whenever a contact comes or goes takes
+// longer than the factor. The border is the last three rows. LAPACK where CHOLMOD was found (which needs it
+// too), otherwise Eigen.
 #pragma once
 #include <vector>
 

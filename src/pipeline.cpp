@@ -166,6 +166,7 @@ RelaxOptions relax_options(const Fabric& fabric, const Program& program, const P
   options.model.material.friction =
       request.friction.value_or(yarn.friction_coefficient.value_or(usual_friction));
   if (is_free_piece(program, request)) options.model.free = no_frame;
+  options.set = program.settings.set;
   return options;
 }
 

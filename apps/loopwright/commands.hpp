@@ -86,9 +86,10 @@ struct RelaxCommand {
   std::string file, out, json, render;
   PieceRequest piece{.start_from_cell = true};
   PictureRequest picture;
-  int threads = 0;      // 0: all
-  int modes = 0;        // lowest modes to report, and stability
-  bool let_go = false;  // take the plates of a finite piece away in the end
+  int threads = 0;            // 0: all
+  int modes = 0;              // lowest modes to report, and stability
+  std::optional<double> set;  // share of the curvature at rest that the yarn keeps
+  bool let_go = false;        // take the plates of a finite piece away in the end
   std::optional<int> most_iterations;
 };
 int run(const RelaxCommand& command);

@@ -249,6 +249,11 @@ void add_commands(CLI::App& app, Commands& commands, Action& action) {
   relax->add_option("--most-iterations", commands.relax.most_iterations, "Stop after so many Newton steps")
       ->check(CLI::Range(1, 1'000'000));
   add_modes_option(*relax, commands.relax.modes);
+  relax
+      ->add_option("--set", commands.relax.set,
+                   "Share of its curvature at rest that the yarn keeps as the shape it has when unloaded")
+      ->type_name("SHARE")
+      ->check(CLI::Range(0.0, 1.0));
   relax->add_flag("--let-go", commands.relax.let_go,
                   "In the end take away the plates between which a finite piece lies: plain curls");
   relax->callback([&] { action = [&] { return run(commands.relax); }; });

@@ -103,6 +103,15 @@ int run(const RelaxCommand& command) {
   std::optional<Piece> piece = read_piece(command.file, command.piece);
   if (!piece) return exit_error;
   if (command.most_iterations) piece->options.most_iterations = *command.most_iterations;
+  if (command.set) {
+    for (const FabricYarn& yarn : piece->state.fabric.yarns)
+      if (!yarn.natural_curvature.empty()) {
+        std::cerr << command.file
+                  << ": error: its yarn is set already; leave out --set, or start from its notation\n";
+        return exit_error;
+      }
+    piece->options.set = *command.set;
+  }
   set_thread_count(command.threads);
 
   const RelaxRun run = relax_watched(*piece, command.let_go);

@@ -121,6 +121,17 @@ void copy_stretch(const Fabric& cell, const Stretch& stretch, const std::vector<
     yarn.control_points.push_back(
         cell_control_point(cell, stretch, stretch.reversed ? stretch.end + 2 - (i - stretch.begin) : i));
   yarn.segment_rest_length = from.segment_rest_length;
+  yarn.natural_curvature.clear();
+  if (!from.natural_curvature.empty()) {
+    const int period = from.segments();
+    for (int i = stretch.begin; i < stretch.end; ++i) {
+      const int segment = stretch.reversed ? stretch.end - 1 - (i - stretch.begin) : i;
+      std::array<double, 4> curvature =
+          from.natural_curvature[static_cast<std::size_t>(((segment % period) + period) % period)];
+      if (stretch.reversed) std::reverse(curvature.begin(), curvature.end());
+      yarn.natural_curvature.push_back(curvature);
+    }
+  }
   const double count = stretch.end - stretch.begin;
   for (const ImagedSpan& s : spans) {
     const double turns = *turns_of(from, s, stretch.shift) * from.segments() - stretch.begin;

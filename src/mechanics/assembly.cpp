@@ -339,7 +339,10 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
       for (std::size_t k = 0; k < 4; ++k)
         for (std::size_t d = 0; d < 3; ++d) x[3 * k + d] = extended_[f + k][static_cast<int>(d)];
       const Stretch along{yarn.stretch_stiffness, model_.natural_length[static_cast<std::size_t>(e)]};
-      const Bend across{yarn.bend_stiffness, yarn.rest_length};
+      const Bend across{yarn.bend_stiffness, yarn.rest_length,
+                        model_.natural_curvature.empty()
+                            ? nullptr
+                            : &model_.natural_curvature[static_cast<std::size_t>(e)]};
       const Plates flat{model_.plates.stiffness, model_.plates.low, model_.plates.high, yarn.rest_length,
                         model_.samples};
       const bool pressed = plates && flat.touch(places_.boxes[static_cast<std::size_t>(e)]);

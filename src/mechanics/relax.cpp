@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "mechanics/contact/sample_clearance.hpp"
+#include "mechanics/energies/bend.hpp"
 #include "mechanics/newton.hpp"
 
 namespace loopwright {
@@ -44,9 +45,7 @@ FlatPlates plates_round(const Fabric& fabric, double room) {
   return {50, low - room, high + room};
 }
 
-}  // namespace
-
-RelaxResult relax(const Fabric& fabric, const RelaxOptions& options) {
+RelaxResult relax_as_it_is(const Fabric& fabric, const RelaxOptions& options) {
   if (!(options.tolerance > 0) || !std::isfinite(options.tolerance))
     throw std::invalid_argument("the tolerance must be a positive number");
   if (!(options.model.material.contact.core > 0))  // only while yarn grows in may it be less
@@ -144,6 +143,50 @@ RelaxResult relax(const Fabric& fabric, const RelaxOptions& options) {
                      : result.stopped ? "stopped"
                                       : "not converged after " + std::to_string(result.newton_iterations) +
                                             " Newton steps";
+  return result;
+}
+
+}  // namespace
+
+Fabric set_yarn(Fabric fabric, double share) {
+  if (!(share >= 0 && share <= 1)) throw std::invalid_argument("the set of yarn must lie between 0 and 1");
+  for (FabricYarn& yarn : fabric.yarns) {
+    yarn.natural_curvature.clear();
+    if (share == 0) continue;
+    for (int e = 0; e < yarn.segments(); ++e) {
+      SegmentDofs x;
+      for (int k = 0; k < 4; ++k) {
+        const Vec3 q = control_point(fabric, yarn, e + k);
+        for (int c = 0; c < 3; ++c) x[static_cast<std::size_t>(3 * k + c)] = q[c];
+      }
+      std::array<double, 4>& curvature = yarn.natural_curvature.emplace_back();
+      for (std::size_t g = 0; g < 4; ++g) {
+        const Bend::Point p = Bend{}.point(x, g);
+        const double squared = p.D / (p.A * p.A) - p.C * p.C / (p.A * p.A * p.A);
+        curvature[g] = share * std::sqrt(std::max(squared, 0.0));
+      }
+    }
+  }
+  return fabric;
+}
+
+RelaxResult relax(const Fabric& fabric, const RelaxOptions& options) {
+  if (!(options.set >= 0 && options.set <= 1))
+    throw std::invalid_argument("the set of yarn must lie between 0 and 1");
+  RelaxResult first = relax_as_it_is(fabric, options);
+  const bool is_set = std::any_of(fabric.yarns.begin(), fabric.yarns.end(),
+                                  [](const FabricYarn& yarn) { return !yarn.natural_curvature.empty(); });
+  if (is_set || options.set == 0 || !first.converged) return first;
+  RelaxOptions again = options;
+  again.grow_in = false;
+  again.history = std::move(first.history);
+  again.model.plates = first.plates;
+  again.most_iterations = std::max(1, options.most_iterations - first.newton_iterations);
+  RelaxResult result = relax_as_it_is(set_yarn(std::move(first.fabric), options.set), again);
+  result.newton_iterations += first.newton_iterations;
+  result.linear_iterations += first.linear_iterations;
+  result.factorisations += first.factorisations;
+  result.pass_throughs += first.pass_throughs;
   return result;
 }
 

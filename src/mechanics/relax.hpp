@@ -26,6 +26,10 @@ struct RelaxOptions {
   // cloth curls otherwise. Negative: no plates. Periodic cells need none. `model.plates`, if they have a
   // stiffness, stand where they are: a piece that is gone on with keeps its own.
   double plate_room = 0.25;
+  // Share of its curvature at rest that the yarn keeps as the shape it has when unloaded, 0 to 1 (steaming,
+  // days of rest): relaxed, set there (set_yarn()) and relaxed again. A fabric whose yarn is set already
+  // keeps what it has.
+  double set = 0;
   ContactHistory history;  // of the run that this one goes on from; empty: contacts start unloaded
   // Called after every iteration; returning false stops the run (what was reached is returned, not
   // converged).
@@ -45,6 +49,10 @@ struct RelaxResult {
   int pass_throughs = 0;  // steps that could not be certified free of crossings: 0, or the result is broken
   std::string message;    // why it ended, in words
 };
+
+// The fabric with its yarn set in the shape that it has: `share` of the curvature of its centrelines becomes
+// their natural curvature; 0: straight. Throws std::invalid_argument for a share outside 0 to 1.
+Fabric set_yarn(Fabric fabric, double share);
 
 // Throws std::invalid_argument on non-finite input or yarn data out of range.
 RelaxResult relax(const Fabric& fabric, const RelaxOptions& options);

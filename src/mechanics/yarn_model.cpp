@@ -37,6 +37,12 @@ void check_yarn(const Fabric& fabric, const FabricYarn& yarn) {
   require(std::isfinite(yarn.diameter) && yarn.diameter > 0,
           "the diameter of a yarn must be a positive number");
   for (const Vec3& p : yarn.control_points) require(is_finite(p), "a control point is not a finite number");
+  require(yarn.natural_curvature.empty() ||
+              yarn.natural_curvature.size() == static_cast<std::size_t>(yarn.segments()),
+          "natural curvature must be given for every segment of a yarn or for none");
+  for (const std::array<double, 4>& segment : yarn.natural_curvature)
+    for (const double kappa : segment)
+      require(std::isfinite(kappa) && kappa >= 0, "a natural curvature must be a number, 0 or more");
 }
 
 }  // namespace
@@ -63,6 +69,7 @@ YarnModel build_yarn_model(const Fabric& fabric, const ModelOptions& options) {
   model.contact = options.material.contact;
   model.friction = options.material.friction;
   double longest_segment = 0;
+  bool is_set = false;
   for (const FabricYarn& yarn : fabric.yarns) {
     check_yarn(fabric, yarn);
     const double area = yarn.diameter * yarn.diameter;
@@ -94,6 +101,10 @@ YarnModel build_yarn_model(const Fabric& fabric, const ModelOptions& options) {
       model.yarn_of_segment.push_back(static_cast<std::int32_t>(model.yarns.size()));
       model.natural_length.push_back(y.rest_length);
     }
+    is_set = is_set || !yarn.natural_curvature.empty();
+    model.natural_curvature.resize(static_cast<std::size_t>(y.first_segment));
+    model.natural_curvature.insert(model.natural_curvature.end(), yarn.natural_curvature.begin(),
+                                   yarn.natural_curvature.end());
     for (int i = 0; i < y.nodes; ++i)
       model.held.push_back(i < static_cast<int>(yarn.held.size()) ? yarn.held[static_cast<std::size_t>(i)]
                                                                   : std::uint8_t{0});
@@ -102,6 +113,10 @@ YarnModel build_yarn_model(const Fabric& fabric, const ModelOptions& options) {
     model.extended += y.nodes + ghosts;
     model.yarns.push_back(y);
   }
+  if (is_set)
+    model.natural_curvature.resize(static_cast<std::size_t>(model.segments));
+  else
+    model.natural_curvature = {};
   model.samples = std::max(2, static_cast<int>(std::ceil(longest_segment / options.sample_spacing - 1e-9)));
   require(model.samples <= most_contact_samples,
           "segments of " + std::to_string(longest_segment) + " d are too long for contact samples every " +

@@ -57,6 +57,8 @@ struct YarnModel {
   std::vector<std::uint8_t> held;                 // [node]
   // [segment] length at which it is not stretched, in d: the yarn's rest length, except while yarn grows in.
   std::vector<double> natural_length;
+  // [segment] curvature of set yarn when unloaded, 1/d, at the Gauss points; empty: all yarn is straight.
+  std::vector<std::array<double, 4>> natural_curvature;
   // [node] constant force on a control point, B/d^2 (dead: it keeps its direction); empty: none. A force f at
   // a place of a segment is f times the spline weights there, on its four control points. Minus f times the
   // place counts in EnergyParts::load.

@@ -101,6 +101,20 @@ void put_fabric(hdf5::Writer& out, const Fabric& fabric) {
   out.column("fabric/periodic", std::span<const std::uint8_t>(&periodic, 1));
 }
 
+// Of set yarn alone: a row for every segment of every yarn, in order.
+void put_set(hdf5::Writer& out, const std::vector<FabricYarn>& yarns) {
+  if (std::all_of(yarns.begin(), yarns.end(),
+                  [](const FabricYarn& y) { return y.natural_curvature.empty(); }))
+    return;
+  std::vector<double> curvatures;
+  for (const FabricYarn& yarn : yarns)
+    for (std::size_t e = 0; e < static_cast<std::size_t>(yarn.segments()); ++e) {
+      const auto row = yarn.natural_curvature.empty() ? std::array<double, 4>{} : yarn.natural_curvature[e];
+      curvatures.insert(curvatures.end(), row.begin(), row.end());
+    }
+  out.column("segments/natural_curvature", curvatures, 4, "1/d");
+}
+
 void put_yarns(hdf5::Writer& out, const std::vector<FabricYarn>& yarns) {
   using Y = FabricYarn;
   out.column("yarns/yarn", gathered<std::int32_t>(yarns, [](const Y& y) { return y.yarn.value; }));
@@ -111,6 +125,7 @@ void put_yarns(hdf5::Writer& out, const std::vector<FabricYarn>& yarns) {
              1, "tex");
   out.column("yarns/segment_rest_length",
              gathered<double>(yarns, [](const Y& y) { return y.segment_rest_length; }), 1, "d");
+  put_set(out, yarns);
   out.column("yarns/periodic", gathered<std::uint8_t>(yarns, [](const Y& y) { return y.periodic ? 1 : 0; }));
   out.column("yarns/shift", shifts(yarns), 2);
   out.column("yarns/control_points",

@@ -52,6 +52,25 @@ void read_fabric(const Reader& in, Fabric& fabric) {
   fabric.periodic = flag(only(in.octets("fabric/periodic"), "fabric/periodic"), "fabric/periodic");
 }
 
+// A row for every segment of every yarn; yarn whose rows are all 0 is straight.
+void read_set(const Reader& in, std::vector<FabricYarn>& yarns) {
+  const auto curvatures = in.doubles("segments/natural_curvature", 4);
+  std::size_t next = 0;
+  for (FabricYarn& yarn : yarns) {
+    const auto count = static_cast<std::size_t>(std::max(yarn.segments(), 0));
+    if (count > curvatures.size() / 4 - next)
+      throw ContentError("'segments/natural_curvature' has fewer rows than the yarns have segments");
+    for (std::size_t e = 0; e < count; ++e, ++next)
+      yarn.natural_curvature.push_back({curvatures[4 * next], curvatures[4 * next + 1],
+                                        curvatures[4 * next + 2], curvatures[4 * next + 3]});
+    if (std::all_of(yarn.natural_curvature.begin(), yarn.natural_curvature.end(),
+                    [](const auto& row) { return row == std::array<double, 4>{}; }))
+      yarn.natural_curvature.clear();
+  }
+  if (next != curvatures.size() / 4)
+    throw ContentError("'segments/natural_curvature' has more rows than the yarns have segments");
+}
+
 void read_yarns(const Reader& in, std::vector<FabricYarn>& yarns) {
   const auto ids = in.integers("yarns/yarn"), carriers = in.integers("yarns/carrier");
   const auto colours = in.texts("yarns/colour");
@@ -85,6 +104,7 @@ void read_yarns(const Reader& in, std::vector<FabricYarn>& yarns) {
     yarns.push_back(std::move(yarn));
   }
   if (next != held.size()) throw ContentError("'yarns/control_points' leaves control points over");
+  if (in.has("segments/natural_curvature")) read_set(in, yarns);
 }
 
 void read_loops(const Reader& in, Fabric& fabric) {
@@ -155,6 +175,12 @@ std::string yarn_fault(const FabricYarn& yarn, bool fabric_is_periodic) {
   if (yarn.periodic && !fabric_is_periodic && yarn.shift != std::array<int, 2>{0, 0})
     return "it repeats with a lattice that the fabric does not have";
   if (yarn.segments() < 1) return "it has too few control points";
+  if (!yarn.natural_curvature.empty() &&
+      yarn.natural_curvature.size() != static_cast<std::size_t>(yarn.segments()))
+    return "its natural curvatures and segments differ in number";
+  for (const std::array<double, 4>& row : yarn.natural_curvature)
+    for (const double kappa : row)
+      if (!(kappa >= 0) || !std::isfinite(kappa)) return "a natural curvature is not a number of 0 or more";
   if (yarn.held.size() != yarn.control_points.size())
     return "its held marks and control points differ in number";
   if (std::any_of(yarn.held.begin(), yarn.held.end(), [](std::uint8_t h) { return h > 1; }))

@@ -48,7 +48,12 @@ struct Case<Stretch> {
 
 template <>
 struct Case<Bend> {
-  static Bend element(Generator& random) { return {uniform(random, 0.5, 2), uniform(random, 1.2, 1.6)}; }
+  // Straight yarn and set yarn, bent more and less than it was set.
+  static Bend element(Generator& random) {
+    static const std::array<std::array<double, 4>, 2> set{{{0.3, 0.1, 0, 0.6}, {0.02, 0.9, 0.4, 0.2}}};
+    const auto kind = static_cast<std::size_t>(uniform(random, 0, 3));
+    return {uniform(random, 0.5, 2), uniform(random, 1.2, 1.6), kind < 2 ? &set[kind] : nullptr};
+  }
   static std::array<double, 12> state(const Bend&, Generator& random) {
     std::array<double, 12> x{};
     place_segment(x, 0, random, {1, 2, 3}, {0, 0.6, 0.8});

@@ -45,6 +45,7 @@ ContactHistory tiled_history(const Fabric& cell, const ContactHistory& history, 
   std::sort(tiled.begin(), tiled.end(), [](const ContactSlip& a, const ContactSlip& b) {
     return std::tie(a.a, a.b) < std::tie(b.a, b.b);
   });
+  tiled.shrink_to_fit();
   return tiled;
 }
 

@@ -98,8 +98,8 @@ int first_step_iterations(const Start& start) {
   constexpr double shift = 0.1;
   EXPECT_TRUE(schwarz.factor(hessian, shift));
   const ConjugateGradientResult solved = conjugate_gradient(
-      hessian, shift, [&](const Unknowns& r, Unknowns& z) { schwarz.solve(r, z); }, gradient, 1e-3, 300,
-      step);
+      hessian, shift, [&](const Unknowns& r, Unknowns& z) { schwarz.solve(r, z); }, gradient, 1e-3,
+      {.most = 300}, step);
   EXPECT_TRUE(solved.converged);
   Unknowns product;
   multiply(hessian, shift, step, product);

@@ -172,7 +172,7 @@ bool Schwarz::answer_measures(const BlockMatrix& matrix, double shift) {
     Unknowns change;
     const ConjugateGradientResult solved = conjugate_gradient(
         matrix, shift, [this](const Unknowns& r, Unknowns& z) { solve_points(r, z); }, product, 1e-3,
-        known ? known_iterations : fresh_iterations, change);
+        {.most = known ? known_iterations : fresh_iterations}, change);
     iterations += solved.iterations;
     if (solved.indefinite) return false;
     for (std::size_t i = 0; i < control_points_; ++i) answer.u[i] -= change.u[i];

@@ -4,6 +4,9 @@
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 #include "base/parallel.hpp"
 #include "mechanics/linear/conjugate_gradient.hpp"
@@ -136,6 +139,10 @@ void Schwarz::number_results() {
 bool Schwarz::factor(const BlockMatrix& matrix, double shift) {
   // Coarse spaces first: the binding points' factor is the largest and needs the most room while it is made.
   for (const auto& patch : patches_) patch->factor.clear();
+#ifdef __GLIBC__
+  // The heap keeps what thousands of small factors leave behind; the coarse factors are too large for it.
+  if (!answers_.empty()) malloc_trim(0);
+#endif
   for (const auto& level : levels_) {
     BlockMatrix seen;
     level->space->project(matrix, shift, seen);

@@ -3,10 +3,15 @@
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
 
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
 #include <fstream>
 #include <map>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "base/parallel.hpp"
 #include "geometry/fit_fabric.hpp"
@@ -81,6 +86,77 @@ struct Kernels {
   BlockMatrix hessian;
 };
 
+// What this machine allows one core: doubles read from memory and from the cache, and additions with
+// multiplications in the instruction set that the program is built for (sixteen independent chains of pairs).
+double read_rate(std::size_t doubles) {  // bytes a second
+  const std::vector<double> data(doubles, 1.0);
+  double best = 0;
+  for (int trial = 0; trial < 9; ++trial) {
+    const int rounds = static_cast<int>(std::max<std::size_t>(1, (std::size_t{1} << 24) / doubles));
+    const auto start = std::chrono::steady_clock::now();
+    for (int round = 0; round < rounds; ++round) {
+      std::array<double, 16> sum{};
+      for (std::size_t i = 0; i + 16 <= doubles; i += 16)
+        for (std::size_t l = 0; l < 16; ++l) sum[l] += data[i + l];
+      benchmark::DoNotOptimize(sum);
+    }
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+    best = std::max(best, rounds * static_cast<double>(doubles) * sizeof(double) / taken.count());
+  }
+  return best;
+}
+double flop_rate() {  // a second
+  using Two = double __attribute__((vector_size(16)));
+  constexpr int rounds = 1'000'000;
+  double best = 0;
+  for (int trial = 0; trial < 9; ++trial) {
+    Two a{1, 1}, b = a, c = a, d = a, e = a, f = a, g = a, h = a;
+    Two factor{0.999999, 0.999999}, summand{1e-6, 1e-6};
+    benchmark::DoNotOptimize(factor);
+    benchmark::DoNotOptimize(summand);
+    const auto start = std::chrono::steady_clock::now();
+    for (int round = 0; round < rounds; ++round) {
+      a = a * factor + summand, b = b * factor + summand, c = c * factor + summand, d = d * factor + summand;
+      e = e * factor + summand, f = f * factor + summand, g = g * factor + summand, h = h * factor + summand;
+    }
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+    benchmark::DoNotOptimize(a += b + c + d + e + f + g + h);
+    best = std::max(best, 32.0 * rounds / taken.count());
+  }
+  return best;
+}
+struct Machine {
+  double flops, memory, cache;  // a second
+};
+const Machine& machine() {
+  constexpr std::size_t far_beyond_caches = std::size_t{1} << 24, half_a_cache = std::size_t{1} << 15;
+  static const Machine measured{flop_rate(), read_rate(far_beyond_caches), read_rate(half_a_cache)};
+  return measured;
+}
+void machine_alone(benchmark::State& state) {
+  for (auto _ : state) benchmark::DoNotOptimize(machine());
+  state.counters["Gflop/s"] = 1e-9 * machine().flops;
+  state.counters["memory_GB/s"] = 1e-9 * machine().memory;
+  state.counters["cache_GB/s"] = 1e-9 * machine().cache;
+}
+BENCHMARK(machine_alone)->Iterations(1);
+
+// Arithmetic and traffic that a kernel cannot do without, for the whole piece, and the least time that these
+// take here, one beside the other. `of_bound`: that time over what the kernel takes.
+struct Work {
+  double flops, bytes;
+};
+void against_machine(benchmark::State& state, int n, const Work& work) {
+  const double loops = static_cast<double>(n) * n;
+  // What is gone through once in a kernel comes from the second-level cache if it all fits half a megabyte.
+  const double reading = work.bytes < 5e5 ? machine().cache : machine().memory;
+  const double least = std::max(work.flops / machine().flops, work.bytes / reading);
+  state.counters["kflop_per_loop"] = 1e-3 * work.flops / loops;
+  state.counters["kB_per_loop"] = 1e-3 * work.bytes / loops;
+  state.counters["bound_ns_per_loop"] = 1e9 * least / loops;
+  state.counters["of_bound"] = benchmark::Counter(least, benchmark::Counter::kIsIterationInvariantRate);
+}
+
 // Processor time per loop of the piece.
 void per_loop(benchmark::State& state, int n) {
   state.counters["per_loop"] =
@@ -88,17 +164,68 @@ void per_loop(benchmark::State& state, int n) {
                          benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
+// Flops of one segment, by the formulas in energies/: at each of four Gauss points p' and p'' (48), their
+// products (18), the derivatives by them (40), three 3 x 3 matrices of bend (150), the gradient (48), ten
+// blocks (8 an entry); stretch: the tangent (20), ten blocks of a dyad (3 an entry), the gradient (48).
+constexpr double bend_flops = 4 * (48 + 18 + 40 + 150 + 48 + 10 * 9 * 8),
+                 stretch_flops = 4 * (20 + 10 * 9 * 3 + 48);
+// Adding a segment's sixteen blocks, their columns of the border and its corner.
+constexpr double block_flops = 9 + 9 + 12,
+                 segment_flops = bend_flops + stretch_flops + 16 * (9 + block_flops);
+// Matrix, border and gradient are written once (and fetched before that), places and indices are read.
+double matrix_bytes(const BlockMatrix& m) {
+  return 2 * static_cast<double>(m.column.size()) * sizeof(Block) +
+         static_cast<double>(m.column.size()) * sizeof(std::int32_t) +
+         static_cast<double>(m.rows()) * (2 * sizeof(Block) + 4 * sizeof(Vec3));
+}
+
+// Contact as it is in this state: distances of samples whose row is near the other segment, pairs of samples
+// in the law, segment pairs that are folded into control points.
+Work contact_work(const Kernels& k) {
+  constexpr double distance = 8, box = 12, in_law = 90, fold = 2 * (10 * 12 + 12),
+                   active_blocks = 64 * block_flops;
+  const auto samples = static_cast<std::size_t>(k.model.samples);
+  const SamplePlaces& p = k.assembly.places();
+  Work work{0, 0};
+  for (const SegmentPair& pair : k.assembly.pairs()) {
+    if (!(pair.distance2 < 1)) continue;
+    work.flops += active_blocks;
+    for (std::size_t i = 0; i < samples; ++i) {
+      const std::size_t a = static_cast<std::size_t>(pair.a) * samples + i;
+      work.flops += box;
+      if (squared_distance(p.x[a], p.y[a], p.z[a], p.boxes[static_cast<std::size_t>(pair.b)]) >= 1) continue;
+      work.flops += distance * static_cast<double>(samples);
+      bool touched = false;
+      for (std::size_t j = 0; j < samples; ++j) {
+        const std::size_t b = static_cast<std::size_t>(pair.b) * samples + j;
+        const bool excluded =
+            pair.same_yarn &&
+            std::abs(pair.arc_offset + (static_cast<double>(j) - static_cast<double>(i)) *
+                                           k.model.yarns[0].rest_length / k.model.samples) < k.model.excluded;
+        if (excluded || squared_norm(Vec3{p.x[a] - p.x[b], p.y[a] - p.y[b], p.z[a] - p.z[b]}) >= 1) continue;
+        work.flops += in_law;
+        touched = true;
+      }
+      if (touched) work.flops += fold + 16 * 12;
+    }
+  }
+  return work;
+}
+
 // Pairs within a tenth of a diameter: none, so that only stretch, bend and the pattern are left.
 void stretch_and_bend(benchmark::State& state) {
   const int n = static_cast<int>(state.range(0));
   Kernels k(n, 0.1);
   for (auto _ : state) k.assembly.hessian(k.state, k.gradient, k.hessian);
+  against_machine(state, n, {segment_flops * k.model.segments, matrix_bytes(k.hessian)});
   per_loop(state, n);
 }
 void stretch_bend_and_contact(benchmark::State& state) {
   const int n = static_cast<int>(state.range(0));
   Kernels k(n);
   for (auto _ : state) k.assembly.hessian(k.state, k.gradient, k.hessian);
+  against_machine(state, n,
+                  {segment_flops * k.model.segments + contact_work(k).flops, matrix_bytes(k.hessian)});
   state.counters["pairs_per_loop"] = static_cast<double>(k.assembly.pairs().size()) / n / n;
   per_loop(state, n);
 }
@@ -135,6 +262,7 @@ void hessian_product(benchmark::State& state) {
                        static_cast<double>(k.hessian.rows()) * (sizeof(Block) + 2 * sizeof(Vec3));
   state.counters["blocks_per_loop"] = static_cast<double>(k.hessian.column.size()) / n / n;
   state.counters["GB/s"] = benchmark::Counter(bytes * 1e-9, benchmark::Counter::kIsIterationInvariantRate);
+  against_machine(state, n, {18.0 * static_cast<double>(k.hessian.column.size()), bytes});
   per_loop(state, n);
 }
 void cholesky_factor(benchmark::State& state) {

@@ -48,6 +48,24 @@ struct Partial {
   Block corner{};
 };
 
+// to[k][l] += weight[k] weight[l] hessian for k <= l
+void add_weighted(const std::array<double, 4>& weight, const Symmetric3& hessian,
+                  std::array<std::array<Symmetric3, 4>, 4>& to) {
+  for (std::size_t k = 0; k < 4; ++k)
+    for (std::size_t l = k; l < 4; ++l) {
+      const double w = weight[k] * weight[l];
+      for (std::size_t d = 0; d < 6; ++d) to[k][l][d] += w * hessian[d];
+    }
+}
+
+void clear_values(BlockMatrix& matrix) {
+  matrix.block.assign(matrix.column.size(), Block{});
+  matrix.border.assign(static_cast<std::size_t>(matrix.rows()), Block{});
+  matrix.corner = {};
+}
+
+constexpr int few_nodes = 400;  // for which a table of all places in the matrix is cheap (640 kB)
+
 // Chunks are ranges of control points that depend on the fabric alone.
 int chunk_count(int nodes) { return std::clamp(nodes / 3000, 1, 16); }
 
@@ -172,6 +190,26 @@ void Assembly::build_pattern(BlockMatrix& matrix) const {
         }
     }
   };
+  if (model_.nodes <= few_nodes) {
+    // Few control points: a table of all blocks says where each one is, and nothing need be sorted.
+    matrix.places.assign(nodes * nodes, -1);
+    each_block([&](std::int32_t i, std::int32_t j) {
+      matrix.places[static_cast<std::size_t>(i) * nodes + static_cast<std::size_t>(j)] = 0;
+    });
+    matrix.row_start.assign(nodes + 1, 0);
+    matrix.column.clear();
+    for (std::size_t i = 0; i < nodes; ++i) {
+      for (std::size_t j = 0; j < nodes; ++j)
+        if (std::int32_t& at = matrix.places[i * nodes + j]; at == 0) {
+          at = static_cast<std::int32_t>(matrix.column.size());
+          matrix.column.push_back(static_cast<std::int32_t>(j));
+        }
+      matrix.row_start[i + 1] = static_cast<std::int32_t>(matrix.column.size());
+    }
+    clear_values(matrix);
+    return;
+  }
+  matrix.places.clear();
   each_block([&](std::int32_t i, std::int32_t) { ++start[static_cast<std::size_t>(i) + 1]; });
   for (std::size_t i = 0; i < nodes; ++i) start[i + 1] += start[i];
   std::vector<std::int32_t> columns(static_cast<std::size_t>(start[nodes])),
@@ -193,9 +231,7 @@ void Assembly::build_pattern(BlockMatrix& matrix) const {
   }
   matrix.column.assign(columns.begin(), columns.begin() + static_cast<std::ptrdiff_t>(kept));
   std::vector<std::int32_t>().swap(columns);
-  matrix.block.assign(matrix.column.size(), Block{});
-  matrix.border.assign(nodes, Block{});
-  matrix.corner = {};
+  clear_values(matrix);
 }
 
 void Assembly::metric(BlockMatrix& matrix) const {
@@ -364,9 +400,13 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
                         b0 = static_cast<std::size_t>(pair.b * model_.samples);
       const YarnModel::Yarn& ya = model_.yarn_of(pair.a);
       const YarnModel::Yarn& yb = model_.yarn_of(pair.b);
+      const Vec3 image = state.lattice(pair.m, pair.n);
+      const double scale = law_scale(pair.a, pair.b), reach = model_.contact.outer * scale;
+      if (squared_distance(places_.boxes[static_cast<std::size_t>(pair.a)], {image.x, image.y, image.z},
+                           places_.boxes[static_cast<std::size_t>(pair.b)]) >= reach * reach)
+        continue;
       ContactPairInput in{{&places_.x[a0], &places_.y[a0], &places_.z[a0]},
                           {&places_.x[b0], &places_.y[b0], &places_.z[b0]}};
-      const Vec3 image = state.lattice(pair.m, pair.n);
       in.image = {image.x, image.y, image.z};
       in.box_b = &places_.boxes[static_cast<std::size_t>(pair.b)];
       in.count = model_.samples;
@@ -376,7 +416,6 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
         in.spacing = ya.rest_length / model_.samples;
         in.excluded = model_.excluded * ya.diameter;
       }
-      const double scale = law_scale(pair.a, pair.b);
       const ContactLaw law = scale == 1 ? model_.contact : model_.contact.scaled(scale);
       if (!gradient) {
         sums.energy.contact += contact_energy(in, law);
@@ -432,8 +471,10 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
         Vec3 ga = rub.law.weight_a[k] * rub_force, gb = -rub.law.weight_b[k] * rub_force;
         for (std::size_t i = 0; i < n; ++i) {
           const double w = model_.weights[i][k];
-          ga += w * Vec3{out.gradient_a[i][0], out.gradient_a[i][1], out.gradient_a[i][2]};
-          gb += w * Vec3{out.gradient_b[i][0], out.gradient_b[i][1], out.gradient_b[i][2]};
+          if (out.touched_a[i])
+            ga += w * Vec3{out.gradient_a[i][0], out.gradient_a[i][1], out.gradient_a[i][2]};
+          if (out.touched_b[i])
+            gb += w * Vec3{out.gradient_b[i][0], out.gradient_b[i][1], out.gradient_b[i][2]};
         }
         add_gradient(fa + k, ga, whole);
         add_gradient(fb + k, gb, whole);
@@ -444,24 +485,26 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
         }
       }
       if (!matrix) continue;
+      // The sides' own blocks are symmetric in their control points.
+      std::array<std::array<Symmetric3, 4>, 4> aa, bb;
+      for (std::size_t k = 0; k < 4; ++k)
+        for (std::size_t l = k; l < 4; ++l)
+          for (std::size_t d = 0; d < 6; ++d) {
+            aa[k][l][d] = rub.law.weight_a[k] * rub.law.weight_a[l] * rub_stiffness[d];
+            bb[k][l][d] = rub.law.weight_b[k] * rub.law.weight_b[l] * rub_stiffness[d];
+          }
+      for (std::size_t i = 0; i < n; ++i) {
+        if (out.touched_a[i]) add_weighted(model_.weights[i], out.hessian_a[i], aa);
+        if (out.touched_b[i]) add_weighted(model_.weights[i], out.hessian_b[i], bb);
+      }
       for (std::size_t k = 0; k < 4; ++k)
         for (std::size_t l = 0; l < 4; ++l) {
-          Symmetric3 aa{}, bb{}, ab = out.between[k][l];
-          for (std::size_t d = 0; d < 6; ++d) {
-            aa[d] = rub.law.weight_a[k] * rub.law.weight_a[l] * rub_stiffness[d];
-            bb[d] = rub.law.weight_b[k] * rub.law.weight_b[l] * rub_stiffness[d];
+          Symmetric3 ab = out.between[k][l];
+          for (std::size_t d = 0; d < 6; ++d)
             ab[d] -= rub.law.weight_a[k] * rub.law.weight_b[l] * rub_stiffness[d];
-          }
-          for (std::size_t i = 0; i < n; ++i) {
-            const double w = model_.weights[i][k] * model_.weights[i][l];
-            for (std::size_t d = 0; d < 6; ++d) {
-              aa[d] += w * out.hessian_a[i][d];
-              bb[d] += w * out.hessian_b[i][d];
-            }
-          }
           const Block between = unpacked(ab);
-          add_block(fa + k, fa + l, unpacked(aa), frac_a[k], frac_a[l]);
-          add_block(fb + k, fb + l, unpacked(bb), frac_b[k], frac_b[l]);
+          add_block(fa + k, fa + l, unpacked(k <= l ? aa[k][l] : aa[l][k]), frac_a[k], frac_a[l]);
+          add_block(fb + k, fb + l, unpacked(k <= l ? bb[k][l] : bb[l][k]), frac_b[k], frac_b[l]);
           add_block(fa + k, fb + l, between, frac_a[k], frac_b[l]);
           add_block(fb + l, fa + k, transposed(between), frac_b[l], frac_a[k]);
         }

@@ -119,17 +119,6 @@ std::vector<SegmentMotion> segment_motions(const SamplePlaces& from, const Sampl
   return all;
 }
 
-// Squared distance of a box, moved by -image, from another.
-double squared_distance(const SampleBox& a, const Vec3& image, const SampleBox& b) {
-  double sum = 0;
-  for (std::size_t c = 0; c < 3; ++c) {
-    const double shift = image[static_cast<int>(c)],
-                 apart = std::max({b.low[c] - (a.high[c] - shift), (a.low[c] - shift) - b.high[c], 0.0});
-    sum += apart * apart;
-  }
-  return sum;
-}
-
 // Distance of two sticks with centres apart by d: points d + s a - t b, s and t in [-1, 1]. Alternating
 // closest points find the minimum of this convex function; a few rounds give it well within a hundredth.
 double stick_distance2(const Vec3& d, const Vec3& a, const Vec3& b) {
@@ -168,7 +157,8 @@ SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnS
     const std::size_t begin = static_cast<std::size_t>(c) * pairs_per_chunk,
                       end = std::min(pairs.size(), begin + pairs_per_chunk);
     Worst& w = worst[static_cast<std::size_t>(c)];
-    for (std::size_t k = begin; k < end; ++k) {
+    std::array<Stick, most_contact_samples> other_sticks;
+    const auto examine = [&](std::size_t k, double most_motion2) {
       const SegmentPair& pair = pairs[k];
       const Vec3 image = state.lattice(pair.m, pair.n), moved_image = target.lattice(pair.m, pair.n) - image;
       const YarnModel::Yarn& yarn = model.yarn_of(pair.a);
@@ -185,11 +175,10 @@ SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnS
         return distance2 > 9 * halves * halves &&
                2 * (motion2 + turns * turns) <= 0.44 * w.ratio2 * distance2;
       };
-      const double most_motion =
-          norm(one_motion.mean - moved_image - other_motion.mean) + one_motion.spread + other_motion.spread;
-      if (harmless(squared_distance(from.boxes[static_cast<std::size_t>(pair.a)], image, other_box),
-                   most_motion * most_motion))
-        continue;
+      if (harmless(pair.distance2, most_motion2)) return;
+      const SampleView others{&from.x[j0], &from.y[j0], &from.z[j0]};
+      std::array<double, most_contact_samples> d2, r2;
+      bool has_other_sticks = false;
       for (std::size_t i = 0; i < count; ++i) {
         const double x = from.x[i0 + i] - image.x, y = from.y[i0 + i] - image.y, z = from.z[i0 + i] - image.z;
         const double sx = to.x[i0 + i] - from.x[i0 + i] - moved_image.x,
@@ -197,22 +186,28 @@ SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnS
                      sz = to.z[i0 + i] - from.z[i0 + i] - moved_image.z;
         const double sample_motion = norm(Vec3{sx, sy, sz} - other_motion.mean) + other_motion.spread;
         if (harmless(squared_distance(x, y, z, other_box), sample_motion * sample_motion)) continue;
+        squared_distances(x, y, z, others, count, 0, d2.data());
         for (std::size_t j = 0; j < count; ++j) {
+          const double rx = sx - (to.x[j0 + j] - from.x[j0 + j]), ry = sy - (to.y[j0 + j] - from.y[j0 + j]),
+                       rz = sz - (to.z[j0 + j] - from.z[j0 + j]);
+          r2[j] = rx * rx + ry * ry + rz * rz;
+        }
+        const Stick one = stick_of(from, to, i0 + i, count);
+        for (std::size_t j = 0; j < count; ++j) {
+          if (harmless(d2[j], r2[j])) continue;
           if (pair.same_yarn && std::abs(pair.arc_offset + (static_cast<double>(j) - static_cast<double>(i)) *
                                                                spacing) < model.excluded * yarn.diameter)
             continue;
-          const double dx = x - from.x[j0 + j], dy = y - from.y[j0 + j], dz = z - from.z[j0 + j];
-          const double d2 = dx * dx + dy * dy + dz * dz;
-          const double rx = sx - (to.x[j0 + j] - from.x[j0 + j]), ry = sy - (to.y[j0 + j] - from.y[j0 + j]),
-                       rz = sz - (to.z[j0 + j] - from.z[j0 + j]);
-          const double r2 = rx * rx + ry * ry + rz * rz;
-          if (harmless(d2, r2)) continue;
-          const Stick one = stick_of(from, to, i0 + i, count), other = stick_of(from, to, j0 + j, count);
-          const double motion = std::sqrt(r2) + norm(one.turn) + norm(other.turn);
-          const double gap2 = stick_distance2({dx, dy, dz}, one.half, other.half);
+          if (!has_other_sticks)
+            for (std::size_t l = 0; l < count; ++l) other_sticks[l] = stick_of(from, to, j0 + l, count);
+          has_other_sticks = true;
+          const Stick& other = other_sticks[j];
+          const double motion = std::sqrt(r2[j]) + norm(one.turn) + norm(other.turn);
+          const double gap2 =
+              stick_distance2({x - others.x[j], y - others.y[j], z - others.z[j]}, one.half, other.half);
           w.gap2 = std::min(w.gap2, gap2);
           // Yarn bends away from its sticks: see `bent_away`. Below twice that half the gap is left for it.
-          const double gap = std::sqrt(gap2), room = std::max({gap - bent_away, 0.5 * gap, 1e-9});
+          const double gap = std::sqrt(gap2), room = std::max(std::max(gap - bent_away, 0.5 * gap), 1e-9);
           const double room2 = room * room;
           if (motion * motion > w.ratio2 * room2) {
             w.ratio2 = motion * motion / room2;
@@ -221,7 +216,26 @@ SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnS
           }
         }
       }
+    };
+    // The pair with the most motion for its distance goes first. It is nearly always the worst, and most
+    // others are then seen to be harmless at once.
+    std::vector<double> most_motion2(end - begin);
+    std::size_t first = begin;
+    double first_share = -1;
+    for (std::size_t k = begin; k < end; ++k) {
+      const SegmentPair& pair = pairs[k];
+      const SegmentMotion &one = motions[static_cast<std::size_t>(pair.a)],
+                          &other = motions[static_cast<std::size_t>(pair.b)];
+      const Vec3 moved_image = target.lattice(pair.m, pair.n) - state.lattice(pair.m, pair.n);
+      const double motion = norm(one.mean - moved_image - other.mean) + one.spread + other.spread;
+      most_motion2[k - begin] = motion * motion;
+      if (pair.same_yarn || !(motion * motion > first_share * pair.distance2)) continue;
+      first = k;
+      first_share = motion * motion / pair.distance2;
     }
+    if (begin < end) examine(first, most_motion2[first - begin]);
+    for (std::size_t k = begin; k < end; ++k)
+      if (k != first) examine(k, most_motion2[k - begin]);
   });
 
   SafeStep result;

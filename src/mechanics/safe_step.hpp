@@ -21,8 +21,8 @@ struct SafeStep {
   bool surely_apart = true;
 };
 
-// `assembly` has its pairs within `range` of this state. `share` (below 1): part of a distance that may be
-// used up.
+// `assembly` has its pairs within `range`, found at this state. `share` (below 1): part of a distance that
+// may be used up.
 SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnState& state,
                    const YarnState& target, double range, double outer_diameter, double share);
 

@@ -1,4 +1,4 @@
-# Mechanics needs Eigen (sparse containers, the fallback factorisation) and, where found, CHOLMOD.
+# Mechanics needs Eigen (sparse containers, the fallback factorisation) and, where found, CHOLMOD with its LAPACK.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 target_link_libraries(loopwright_mechanics PRIVATE $<BUILD_INTERFACE:Eigen3::Eigen>)
 if(LOOPWRIGHT_CHOLMOD)

@@ -40,23 +40,35 @@ double smallest_distance2(const YarnModel& model, const SamplePlaces& p, const S
              j0 = static_cast<std::size_t>(pair.b * model.samples);
   const auto count = static_cast<std::size_t>(model.samples);
   const SampleBox& box = p.boxes[static_cast<std::size_t>(pair.b)];
+  const SampleView others{&p.x[j0], &p.y[j0], &p.z[j0]};
+  std::array<double, most_contact_samples> to_box2{}, d2;
+  for (std::size_t i = 0; i < count; ++i)
+    to_box2[i] = squared_distance(p.x[i0 + i] - image.x, p.y[i0 + i] - image.y, p.z[i0 + i] - image.z, box);
   const YarnModel::Yarn& yarn = model.yarn_of(pair.a);
   const double spacing = yarn.rest_length / model.samples, excluded = model.excluded * yarn.diameter;
   // Neighbours along one yarn: samples closer than this along it do not touch, and are always near.
   const auto along_yarn = [&](std::size_t i, std::size_t j) {
-    return std::abs(pair.arc_offset + (static_cast<double>(j - j0) - static_cast<double>(i - i0)) * spacing) <
-           excluded;
+    return std::abs(pair.arc_offset + (static_cast<double>(j) - static_cast<double>(i)) * spacing) < excluded;
   };
+  // The sample nearest to the box first: most others then need not be looked at.
+  const auto first = static_cast<std::size_t>(
+      std::min_element(to_box2.begin(), to_box2.begin() + static_cast<std::ptrdiff_t>(count)) -
+      to_box2.begin());
   double nearest = beyond2;
-  for (std::size_t i = i0; i < i0 + count; ++i) {
-    const double x = p.x[i] - image.x, y = p.y[i] - image.y, z = p.z[i] - image.z;
-    if (squared_distance(x, y, z, box) >= nearest) continue;
-    for (std::size_t j = j0; j < j0 + count; ++j) {
-      if (pair.same_yarn && along_yarn(i, j)) continue;
-      const double dx = x - p.x[j], dy = y - p.y[j], dz = z - p.z[j], d2 = dx * dx + dy * dy + dz * dz;
-      nearest = d2 < nearest ? d2 : nearest;
+  const auto look_at = [&](std::size_t i) {
+    if (to_box2[i] >= nearest) return;
+    const double least = squared_distances(p.x[i0 + i] - image.x, p.y[i0 + i] - image.y,
+                                           p.z[i0 + i] - image.z, others, count, nearest, d2.data());
+    if (!pair.same_yarn) {
+      nearest = least;
+      return;
     }
-  }
+    for (std::size_t j = 0; j < count; ++j)
+      if (!along_yarn(i, j)) nearest = std::min(nearest, d2[j]);
+  };
+  look_at(first);
+  for (std::size_t i = 0; i < count; ++i)
+    if (i != first) look_at(i);
   return nearest;
 }
 

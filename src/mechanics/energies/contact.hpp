@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "mechanics/energies/energy.hpp"
@@ -38,10 +39,51 @@ struct SampleBox {
 
 // Of a place from a box; 0 inside.
 inline double squared_distance(double x, double y, double z, const SampleBox& box) {
-  const double dx = std::max({box.low[0] - x, x - box.high[0], 0.0}),
-               dy = std::max({box.low[1] - y, y - box.high[1], 0.0}),
-               dz = std::max({box.low[2] - z, z - box.high[2], 0.0});
+  const double dx = std::max(std::max(box.low[0] - x, x - box.high[0]), 0.0),
+               dy = std::max(std::max(box.low[1] - y, y - box.high[1]), 0.0),
+               dz = std::max(std::max(box.low[2] - z, z - box.high[2]), 0.0);
   return dx * dx + dy * dy + dz * dz;
+}
+
+// Of a box, moved by -image, from another; 0 where they overlap.
+inline double squared_distance(const SampleBox& a, const std::array<double, 3>& image, const SampleBox& b) {
+  double sum = 0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double apart =
+        std::max(std::max(b.low[c] - (a.high[c] - image[c]), (a.low[c] - image[c]) - b.high[c]), 0.0);
+    sum += apart * apart;
+  }
+  return sum;
+}
+
+// Of a place from n others, into d2; returns the least of them and `beyond2`. Two at a time, in four running
+// minima, so that none waits for the one before it.
+inline double squared_distances(double x, double y, double z, const SampleView& others, std::size_t n,
+                                double beyond2, double* d2) {
+  using Two = double __attribute__((vector_size(16)));
+  const auto two = [](const double* p) {
+    Two v;
+    std::memcpy(&v, p, sizeof v);
+    return v;
+  };
+  Two least_even{beyond2, beyond2}, least_odd = least_even;
+  const auto pair_of = [&](std::size_t j, Two& least) {
+    const Two dx = x - two(others.x + j), dy = y - two(others.y + j), dz = z - two(others.z + j);
+    const Two v = dx * dx + dy * dy + dz * dz;
+    std::memcpy(d2 + j, &v, sizeof v);
+    least = v < least ? v : least;
+  };
+  std::size_t j = 0;
+  for (; j + 4 <= n; j += 4) {
+    pair_of(j, least_even);
+    pair_of(j + 2, least_odd);
+  }
+  for (; j < n; ++j) {
+    const double dx = x - others.x[j], dy = y - others.y[j], dz = z - others.z[j];
+    d2[j] = dx * dx + dy * dy + dz * dz;
+    least_even[0] = d2[j] < least_even[0] ? d2[j] : least_even[0];
+  }
+  return std::min(std::min(least_even[0], least_even[1]), std::min(least_odd[0], least_odd[1]));
 }
 
 struct ContactPairInput {
@@ -59,6 +101,7 @@ struct ContactPairInput {
 struct ContactPairOutput {
   double energy = 0;
   bool active = false;
+  std::array<bool, most_contact_samples> touched_a, touched_b;  // samples in contact; the rest are all zero
   std::array<std::array<double, 3>, most_contact_samples> gradient_a, gradient_b;
   std::array<Symmetric3, most_contact_samples> hessian_a, hessian_b;
   std::array<std::array<Symmetric3, 4>, 4> between;  // d2U / dq_a dq_b (symmetric 3 x 3)
@@ -81,14 +124,8 @@ inline double contact_energy(const ContactPairInput& in, const ContactLaw& law) 
     const double px = in.a.x[i] - in.image[0], py = in.a.y[i] - in.image[1], pz = in.a.z[i] - in.image[2];
     if (in.box_b && squared_distance(px, py, pz, *in.box_b) >= outer2) continue;
     std::array<double, most_contact_samples> d2;
-    double nearest = outer2;
-    for (int j = 0; j < in.count; ++j) {
-      const double dx = px - in.b.x[j], dy = py - in.b.y[j], dz = pz - in.b.z[j];
-      const double v = dx * dx + dy * dy + dz * dz;
-      d2[static_cast<std::size_t>(j)] = v;
-      nearest = v < nearest ? v : nearest;
-    }
-    if (nearest >= outer2) continue;
+    const auto n = static_cast<std::size_t>(in.count);
+    if (squared_distances(px, py, pz, in.b, n, outer2, d2.data()) >= outer2) continue;
     for (int j = 0; j < in.count; ++j) {
       const double v = d2[static_cast<std::size_t>(j)];
       if (v >= outer2) continue;
@@ -111,13 +148,7 @@ inline void contact_terms(const ContactPairInput& in, const ContactLaw& law, con
     const double px = in.a.x[i] - in.image[0], py = in.a.y[i] - in.image[1], pz = in.a.z[i] - in.image[2];
     if (in.box_b && squared_distance(px, py, pz, *in.box_b) >= outer2) continue;
     std::array<double, most_contact_samples> d2;
-    double nearest = outer2;
-    for (std::size_t j = 0; j < n; ++j) {
-      const double dx = px - in.b.x[j], dy = py - in.b.y[j], dz = pz - in.b.z[j];
-      d2[j] = dx * dx + dy * dy + dz * dz;
-      nearest = d2[j] < nearest ? d2[j] : nearest;
-    }
-    if (nearest >= outer2) continue;
+    if (squared_distances(px, py, pz, in.b, n, outer2, d2.data()) >= outer2) continue;
     std::array<Symmetric3, 4> row{};  // sum over j of h_b(j) K_ij
     bool row_active = false;
     for (std::size_t j = 0; j < n; ++j) {
@@ -130,10 +161,11 @@ inline void contact_terms(const ContactPairInput& in, const ContactLaw& law, con
         for (std::size_t k = 0; k < n; ++k) {
           out.gradient_a[k] = out.gradient_b[k] = {};
           out.hessian_a[k] = out.hessian_b[k] = {};
+          out.touched_a[k] = out.touched_b[k] = false;
         }
         out.between = {};
       }
-      row_active = true;
+      row_active = out.touched_a[i] = out.touched_b[j] = true;
       const double D = std::sqrt(d2[j]), inv = 1 / D;
       const ContactLaw::Value v = law(D);
       out.energy += in.weight * v.energy;

@@ -65,7 +65,7 @@ struct Stretch {
                  hardness = stiffness / rest_length - even;
     for (std::size_t i = 0; i < 12; ++i) {
       term.gradient[i] = tension * G[i];
-      for (std::size_t j = 0; j < 12; ++j) term.hessian[i][j] = hardness * G[i] * G[j];
+      for (std::size_t j = i; j < 12; ++j) term.hessian[i][j] = hardness * G[i] * G[j];
     }
     for (std::size_t g = 0; g < 4; ++g) {
       const auto& h1 = gauss_spline[g].slope;
@@ -73,7 +73,8 @@ struct Stretch {
       for (std::size_t i = 0; i < 4; ++i) {
         for (std::size_t c = 0; c < 3; ++c)
           term.gradient[3 * i + c] += even * gauss_weight[g] * h1[i] * speed[g] * t[c];
-        for (std::size_t j = 0; j < 4; ++j) {
+        // Blocks on and above the diagonal; below it they are mirrored at the end.
+        for (std::size_t j = i; j < 4; ++j) {
           const double f = tension * gauss_weight[g] / speed[g] * h1[i] * h1[j],
                        own = f + even * gauss_weight[g] * h1[i] * h1[j];
           for (std::size_t c = 0; c < 3; ++c) {
@@ -83,6 +84,8 @@ struct Stretch {
         }
       }
     }
+    for (std::size_t i = 0; i < 12; ++i)
+      for (std::size_t j = 0; j < i; ++j) term.hessian[i][j] = term.hessian[j][i];
     return term;
   }
 };

@@ -15,6 +15,12 @@ int chunk_count(std::size_t rows) { return static_cast<int>((rows + rows_per_chu
 }  // namespace
 
 std::size_t BlockMatrix::place(std::int32_t row, std::int32_t col) const {
+  if (!places.empty()) {
+    const std::int32_t at =
+        places[static_cast<std::size_t>(row) * (row_start.size() - 1) + static_cast<std::size_t>(col)];
+    if (at < 0) throw std::logic_error("block outside the matrix pattern");
+    return static_cast<std::size_t>(at);
+  }
   const auto begin = column.begin() + row_start[static_cast<std::size_t>(row)];
   const auto end = column.begin() + row_start[static_cast<std::size_t>(row) + 1];
   const auto at = std::lower_bound(begin, end, col);

@@ -26,6 +26,9 @@ struct BlockMatrix {
   std::vector<double> metric;
   Measures measure_metric{};
 
+  // [rows * rows] of small matrices: the place of a block, or -1; larger ones are searched.
+  std::vector<std::int32_t> places;
+
   int rows() const { return static_cast<int>(row_start.size()) - 1; }
   // Place of block (row, col); the pattern must have it.
   std::size_t place(std::int32_t row, std::int32_t col) const;

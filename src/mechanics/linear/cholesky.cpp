@@ -15,14 +15,35 @@
 // OpenBLAS, if that is the BLAS in use: its threads would fight with ours, and results must not depend on
 // their number.
 extern "C" void openblas_set_num_threads(int) __attribute__((weak));
-// The same for CHOLMOD's own loops; it holds for the thread that calls it.
-extern "C" void omp_set_num_threads(int) __attribute__((weak));
+// CHOLMOD asks for four OpenMP threads at every loop of a factor, whatever OMP_NUM_THREADS says: only a limit
+// of no active level holds it to the calling thread (OpenMP 5.0, 3.2.15; weak: a CHOLMOD without OpenMP has
+// neither).
+extern "C" void omp_set_max_active_levels(int) __attribute__((weak));
+extern "C" int omp_get_max_active_levels() __attribute__((weak));
 #endif
 
 namespace loopwright {
 namespace {
 
 constexpr int small_order = 3000;  // unknowns
+
+#ifdef LOOPWRIGHT_HAS_CHOLMOD
+// While it lives, OpenMP starts no threads for the thread that made it.
+class OneOpenMpThread {
+ public:
+  OneOpenMpThread() {
+    if (omp_set_max_active_levels) omp_set_max_active_levels(0);
+  }
+  ~OneOpenMpThread() {
+    if (omp_set_max_active_levels) omp_set_max_active_levels(levels_);
+  }
+  OneOpenMpThread(const OneOpenMpThread&) = delete;
+  OneOpenMpThread& operator=(const OneOpenMpThread&) = delete;
+
+ private:
+  int levels_ = omp_get_max_active_levels ? omp_get_max_active_levels() : 1;
+};
+#endif
 
 // Lower triangle in compressed columns = upper triangle by rows of the symmetric matrix.
 struct LowerColumns {
@@ -208,7 +229,7 @@ struct Cholesky::Factor {
     }
   }
   bool numeric() {
-    if (omp_set_num_threads) omp_set_num_threads(1);
+    const OneOpenMpThread no_others;
     single = {};
     cholmod_sparse a = view();
     cholmod_factorize(&a, factor, &common);
@@ -223,6 +244,7 @@ struct Cholesky::Factor {
     rhs.x = const_cast<double*>(b);
     rhs.xtype = CHOLMOD_REAL;
     rhs.dtype = CHOLMOD_DOUBLE;
+    const OneOpenMpThread no_others;
     cholmod_dense* result = cholmod_solve(CHOLMOD_A, factor, &rhs, &common);
     if (!result) throw std::bad_alloc();
     std::copy_n(static_cast<const double*>(result->x), unknowns, x);

@@ -6,6 +6,7 @@
 namespace loopwright {
 namespace {
 
+constexpr int dense_nodes = 160;  // below: a sparse factor fills up nearly as much
 constexpr int few_nodes = 1000;   // below: factoring costs less than anything cleverer
 constexpr int many_nodes = 8000;  // above: a whole factor costs too much, see linear/schwarz.hpp
 constexpr int most_inner = 24;    // more products and solves than this cost more than a new factor
@@ -45,8 +46,9 @@ bool StepSolver::solve_direct(const BlockMatrix& hessian, const Unknowns& gradie
                               int& raised, Unknowns& step) {
   for (; raised <= most_raises; ++raised, shift = raised_shift(shift)) {
     ++factorisations;
-    if (!cholesky_.factor(hessian, shift)) continue;
-    cholesky_.solve(gradient, step);
+    const bool dense = model_.nodes < dense_nodes;
+    if (!(dense ? dense_.factor(hessian, shift) : cholesky_.factor(hessian, shift))) continue;
+    dense ? dense_.solve(gradient, step) : cholesky_.solve(gradient, step);
     ++iterations;
     current_ = true;
     return true;

@@ -1,11 +1,12 @@
 // Solves (H + shift D) step = -gradient for Newton's method, by what suits the size of the fabric:
-//   few control points    a Cholesky factor at every step;
+//   few control points    a Cholesky factor at every step, dense for cells of some loops;
 //   middling              conjugate gradients with the factor of an earlier step as preconditioner while it
 //   is good; many, not periodic    conjugate gradients with a Schwarz preconditioner, factored anew when it
 //   has grown stale.
 // If H + shift D is not positive definite the shift is raised until it is.
 #pragma once
 #include "mechanics/linear/conjugate_gradient.hpp"
+#include "mechanics/linear/dense_cholesky.hpp"
 #include "mechanics/linear/schwarz.hpp"
 #include "mechanics/yarn_model.hpp"
 
@@ -33,6 +34,7 @@ class StepSolver {
 
   const YarnModel& model_;
   Cholesky cholesky_;
+  DenseCholesky dense_;
   Schwarz schwarz_;
   bool current_ = false;  // the factor at hand may serve as preconditioner
   double usual_ = 6;      // iterations that a fresh Schwarz factor took last to lower the residual e-fold

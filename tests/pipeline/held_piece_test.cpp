@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "base/parallel.hpp"
 #include "mechanics/linear/conjugate_gradient.hpp"
 #include "mechanics/linear/schwarz.hpp"
 #include "mechanics/newton.hpp"
@@ -124,6 +125,29 @@ TEST(TwoLevelSolver, IterationsDoNotGrowWithThePiece) {
     EXPECT_GT(small, 5) << structure;
     EXPECT_LE(large, 1.5 * small) << structure << ": " << small << " with 400 loops, " << large
                                   << " with 1600";
+  }
+}
+
+TEST(TwoLevelSolver, IsTheSameToTheLastBitForAnyNumberOfThreads) {
+  Start start = start_of("plain", 28);
+  start.options.model.free.width = false;  // pulled, so that factors grow old
+  start.fabric.width *= 1.01;
+  for (FabricYarn& yarn : start.fabric.yarns)
+    for (Vec3& p : yarn.control_points) p.x *= 1.01;
+  start.options.most_iterations = 5;
+  std::vector<RelaxResult> results;
+  for (const int threads : {1, 3}) {
+    set_thread_count(threads);
+    results.push_back(relax(start.fabric, start.options));
+  }
+  set_thread_count(0);
+  EXPECT_GT(results[0].factorisations, 1) << "an old factor is to be given up";
+  EXPECT_EQ(results[0].linear_iterations, results[1].linear_iterations);
+  EXPECT_EQ(results[0].residual, results[1].residual);
+  for (std::size_t y = 0; y < start.fabric.yarns.size(); ++y) {
+    const auto &one = results[0].fabric.yarns[y].control_points,
+               &other = results[1].fabric.yarns[y].control_points;
+    for (std::size_t i = 0; i < one.size(); ++i) ASSERT_EQ(norm(one[i] - other[i]), 0) << y << ' ' << i;
   }
 }
 

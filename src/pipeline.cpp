@@ -191,6 +191,7 @@ std::optional<Fabric> start_from_relaxed_cell(const Knitting& knitting, const Pi
   if (!relaxed.converged) return std::nullopt;
   std::optional<StartFromCell> start = start_from_cell(first, relaxed.fabric, knitting.graph, range);
   if (!start) return std::nullopt;
+  hold_cut_contacts(relaxed.fabric, options.model, *start);
   options.grow_in = false;
   options.history = tiled_history(relaxed.fabric, relaxed.history, *start);
   return std::move(start->fabric);

@@ -87,6 +87,12 @@ void Assembly::prepare(const YarnState& state) {
   place_samples(model_, extended_, places_);
 }
 
+void Assembly::drop_places() {
+  places_ = {};
+  std::vector<Vec3>().swap(extended_);
+  std::vector<Fraction>().swap(fraction_);
+}
+
 void Assembly::update_pairs(const YarnState& state, double range) {
   prepare(state);
   find_segment_pairs(model_, state, places_, range, pairs_);
@@ -127,9 +133,9 @@ Vec3 Assembly::remembered_slip(const SegmentPair& pair) const {
 // Place of the contact on yarn a minus its place on yarn b, from the extended points of the state last
 // prepared.
 Vec3 Assembly::relative_place(const FrictionContact& contact, const YarnState& state) const {
-  const auto fa = static_cast<std::size_t>(model_.first[static_cast<std::size_t>(contact.pair.a)]);
-  const auto fb = static_cast<std::size_t>(model_.first[static_cast<std::size_t>(contact.pair.b)]);
-  Vec3 r = -state.lattice(contact.pair.m, contact.pair.n);
+  const auto fa = static_cast<std::size_t>(model_.first[static_cast<std::size_t>(contact.a)]);
+  const auto fb = static_cast<std::size_t>(model_.first[static_cast<std::size_t>(contact.b)]);
+  Vec3 r = -state.lattice(contact.m, contact.n);
   for (std::size_t k = 0; k < 4; ++k)
     r += contact.law.weight_a[k] * extended_[fa + k] - contact.law.weight_b[k] * extended_[fb + k];
   return r;
@@ -141,10 +147,10 @@ void Assembly::accept(const YarnState& state) {
   for (FrictionContact& contact : friction_)
     contact.law.slip = contact.law.slip_after(relative_place(contact, state));
   remembered_.clear();
+  remembered_.reserve(friction_.size());
   for (const FrictionContact& contact : friction_)
     if (contact.law.load > 0)
-      remembered_.push_back(
-          {contact.pair.a, contact.pair.b, contact.pair.m, contact.pair.n, contact.law.slip});
+      remembered_.push_back({contact.a, contact.b, contact.m, contact.n, contact.law.slip});
 }
 
 EnergyParts Assembly::energy(const YarnState& state) {
@@ -432,7 +438,7 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
       Vec3 rub_force;
       Symmetric3 rub_stiffness{};
       if (matrix && model_.friction > 0) {
-        rub.pair = pair;
+        rub.a = pair.a, rub.b = pair.b, rub.m = pair.m, rub.n = pair.n;
         double force = 0, rub_total_b = 0;
         Vec3 push;
         for (std::size_t i = 0; i < n; ++i) {

@@ -59,12 +59,16 @@ class Assembly {
   const SamplePlaces& places() const { return places_; }
   // Fractional coordinates (xi, eta) of the control points in a state.
   std::vector<std::array<double, 2>> fractions(const YarnState& state) const;
+  // Gives back what every evaluation makes anew (places of samples and the like), for as long as a linear
+  // solution needs the memory.
+  void drop_places();
   // state + step, with the measures' affine part.
   YarnState moved(const YarnState& state, const Unknowns& step, double scale) const;
 
  private:
   struct FrictionContact {
-    SegmentPair pair;
+    std::int32_t a = 0, b = 0;  // segments, b at lattice image (m, n)
+    std::int8_t m = 0, n = 0;
     Friction law;
   };
   EnergyParts terms(const YarnState& state, Unknowns* gradient, BlockMatrix* hessian);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "mechanics/linear/step_solver.hpp"
 #include "mechanics/safe_step.hpp"
@@ -66,7 +67,7 @@ NewtonResult newton(const YarnModel& model, YarnState& state, const NewtonOption
                     double first_shift, ContactHistory* history) {
   NewtonResult result;
   Assembly assembly(model);
-  if (history) assembly.set_history(*history);
+  if (history) assembly.set_history(std::move(*history));
   StepSolver solver(model);
   BlockMatrix hessian;
   Unknowns gradient, step;
@@ -88,13 +89,14 @@ NewtonResult newton(const YarnModel& model, YarnState& state, const NewtonOption
     if (result.iterations == 0 && model.nodes > many_nodes)
       shift = std::min(shift, std::max(result.residual, least_first_shift));
 
+    const bool large = model.nodes > many_nodes;
+    if (large) assembly.drop_places();
     assembly.metric(hessian);
     hessian.measure_metric = {1, 1, 1};
     const double accuracy = std::clamp(0.3 * result.residual, 1e-3, 0.05);
     const StepSolver::Report solve = solver.solve(hessian, state, gradient, accuracy, shift, step);
     if (!solve.solved) break;
-    std::vector<Block>().swap(
-        hessian.block);  // most of what a large piece holds, and not needed until the next
+    if (large) hessian = BlockMatrix{};  // much of what is held, and not needed until the next step
 
     const double energy = result.energy.total(), slope = dot(gradient, step);
     TakenStep taken = take_step(model, assembly, state, step, energy, slope, range);

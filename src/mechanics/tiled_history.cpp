@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include "mechanics/contact/segment_pairs.hpp"
+
 namespace loopwright {
 namespace {
 
@@ -14,38 +16,83 @@ struct Copy {
 
 bool before(const Copy& a, const Copy& b) { return std::tie(a.of, a.m, a.n) < std::tie(b.of, b.m, b.n); }
 
+// All segments of the piece, sorted by what they are copies of.
+class Copies {
+ public:
+  Copies(const Fabric& cell, const StartFromCell& start) {
+    std::vector<std::int32_t> first{0};  // segment of every yarn of the cell
+    for (const FabricYarn& yarn : cell.yarns) first.push_back(first.back() + yarn.segments());
+    for (const auto& yarn : start.images)
+      for (const SegmentImage& image : yarn)
+        copies_.push_back({first[static_cast<std::size_t>(image.yarn)] + image.segment, image.shift[0],
+                           image.shift[1], static_cast<std::int32_t>(copies_.size())});
+    std::sort(copies_.begin(), copies_.end(), before);
+  }
+  // visit(copy, other) for all copies of segment a; other: that of segment b at image (m, n) from it, or
+  // null.
+  template <class Visit>
+  void each_pair(std::int32_t a, std::int32_t b, int m, int n, const Visit& visit) const {
+    const auto [begin, end] =
+        std::equal_range(copies_.begin(), copies_.end(), Copy{a, 0, 0, 0},
+                         [](const Copy& one, const Copy& other) { return one.of < other.of; });
+    for (auto copy = begin; copy != end; ++copy) {
+      const Copy wanted{b, copy->m + m, copy->n + n, 0};
+      const auto other = std::lower_bound(copies_.begin(), copies_.end(), wanted, before);
+      visit(*copy, other == copies_.end() || before(wanted, *other) ? nullptr : &*other);
+    }
+  }
+
+ private:
+  std::vector<Copy> copies_;
+};
+
 }  // namespace
 
 ContactHistory tiled_history(const Fabric& cell, const ContactHistory& history, const StartFromCell& start) {
-  std::vector<std::int32_t> first{0};  // segment of every yarn of the cell
-  for (const FabricYarn& yarn : cell.yarns) first.push_back(first.back() + yarn.segments());
-  std::vector<Copy> copies;
-  for (const auto& yarn : start.images)
-    for (const SegmentImage& image : yarn)
-      copies.push_back({first[static_cast<std::size_t>(image.yarn)] + image.segment, image.shift[0],
-                        image.shift[1], static_cast<std::int32_t>(copies.size())});
-  std::sort(copies.begin(), copies.end(), before);
-  const auto copies_of = [&](std::int32_t segment) {
-    return std::equal_range(copies.begin(), copies.end(), Copy{segment, 0, 0, 0},
-                            [](const Copy& a, const Copy& b) { return a.of < b.of; });
-  };
-
+  const Copies copies(cell, start);
   ContactHistory tiled;
-  for (const ContactSlip& contact : history) {
-    const auto [begin, end] = copies_of(contact.a);
-    for (auto a = begin; a != end; ++a) {
-      const Copy wanted{contact.b, a->m + contact.m, a->n + contact.n, 0};
-      const auto b = std::lower_bound(copies.begin(), copies.end(), wanted, before);
-      if (b == copies.end() || before(wanted, *b)) continue;
-      const bool in_order = a->segment < b->segment;  // pairs are listed once, the lower segment first
-      tiled.push_back({std::min(a->segment, b->segment), std::max(a->segment, b->segment), 0, 0,
+  for (const ContactSlip& contact : history)
+    copies.each_pair(contact.a, contact.b, contact.m, contact.n, [&](const Copy& a, const Copy* b) {
+      if (!b) return;
+      const bool in_order = a.segment < b->segment;  // pairs are listed once, the lower segment first
+      tiled.push_back({std::min(a.segment, b->segment), std::max(a.segment, b->segment), 0, 0,
                        in_order ? contact.slip : -contact.slip});
-    }
-  }
+    });
   std::sort(tiled.begin(), tiled.end(), [](const ContactSlip& a, const ContactSlip& b) {
     return std::tie(a.a, a.b) < std::tie(b.a, b.b);
   });
+  tiled.shrink_to_fit();
   return tiled;
+}
+
+void hold_cut_contacts(const Fabric& cell, const ModelOptions& options, StartFromCell& start) {
+  if (start.images.empty()) return;
+  const YarnModel model = build_yarn_model(cell, options);
+  const YarnState state = build_yarn_state(cell);
+  std::vector<Vec3> extended;
+  SamplePlaces places;
+  std::vector<SegmentPair> pairs;
+  expand(model, state, extended);
+  place_samples(model, extended, places);
+  double thickest = 0;
+  for (const FabricYarn& yarn : cell.yarns) thickest = std::max(thickest, yarn.diameter);
+  find_segment_pairs(model, state, places, model.contact.outer * thickest, pairs);
+
+  const Copies copies(cell, start);
+  std::vector<std::uint8_t> cut;  // [segment of the piece]
+  for (const auto& yarn : start.images) cut.resize(cut.size() + yarn.size(), 0);
+  const auto mark = [&cut](const Copy& copy, const Copy* other) {
+    if (!other) cut[static_cast<std::size_t>(copy.segment)] = 1;
+  };
+  for (const SegmentPair& pair : pairs) {
+    copies.each_pair(pair.a, pair.b, pair.m, pair.n, mark);
+    copies.each_pair(pair.b, pair.a, -pair.m, -pair.n, mark);
+  }
+  std::size_t segment = 0;
+  for (FabricYarn& yarn : start.fabric.yarns)
+    for (std::size_t e = 0; e < static_cast<std::size_t>(yarn.segments()); ++e, ++segment)
+      if (cut[segment] != 0)
+        std::fill_n(yarn.held.begin() + static_cast<std::ptrdiff_t>(e), 4, std::uint8_t{1});
 }
 
 }  // namespace loopwright

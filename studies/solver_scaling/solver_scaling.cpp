@@ -35,7 +35,7 @@ void print_row(const char* what, std::size_t loops, const RelaxResult& r, double
   std::fflush(stdout);
 }
 
-RelaxResult timed(const char* what, std::size_t loops, const Fabric& fabric, RelaxOptions options) {
+RelaxResult timed(const char* what, std::size_t loops, const Fabric& fabric, RelaxOptions& options) {
   if (std::getenv("VERBOSE"))
     options.on_progress = [](const RelaxProgress& p) {
       std::printf("  %s %d %.3e\n", p.phase.c_str(), p.newton_iterations, p.residual);
@@ -62,8 +62,9 @@ int run(const std::string& file, int n) {
     std::printf("%s: no start from the relaxed cell\n", file.c_str());
     return 1;
   }
-  const std::size_t loops = started->loops.size();
-  RelaxResult rest = timed("rest", loops, *started, options);
+  fabric = std::move(*started);
+  const std::size_t loops = fabric.loops.size();
+  RelaxResult rest = timed("rest", loops, fabric, options);
   if (!rest.converged) return 1;
   if (std::getenv("REST_ONLY")) return 0;
   // The frame two per cent wider, all yarn carried along.

@@ -157,13 +157,17 @@ TEST(CompactFactor, SolvesToSinglePrecision) {
   EXPECT_LT(error(), 1e-8);
   const double entries = factor.factor_entries();
   factor.compact();
-  EXPECT_EQ(factor.factor_entries(), entries);
+  EXPECT_LE(factor.factor_entries(), entries);  // CHOLMOD's hold what lies above the diagonal too
+  EXPECT_GT(factor.factor_entries(), 0.5 * entries);
   factor.solve(b, found);
   EXPECT_LT(error(), 1e-2) << "six digits, less what the condition of the matrix takes";
-  // The next factor works anew.
-  ASSERT_TRUE(factor.factor(problem.hessian, shift));
-  factor.solve(b, found);
-  EXPECT_LT(error(), 1e-8);
+  // The next factor works anew, and so it does after a whole one was given up.
+  for (int round = 0; round < 2; ++round) {
+    ASSERT_TRUE(factor.factor(problem.hessian, shift));
+    factor.solve(b, found);
+    EXPECT_LT(error(), 1e-8);
+    factor.clear();
+  }
 }
 
 TEST(Schwarz, SaysThatTheMatrixIsNotDefinite) {

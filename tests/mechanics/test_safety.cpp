@@ -61,6 +61,25 @@ Fabric two_yarns() {
                     })});
 }
 
+std::size_t pairs_in(const Fabric& fabric) {
+  const YarnModel model = build_yarn_model(fabric, frictionless().model);
+  Assembly assembly(model);
+  assembly.update_pairs(build_yarn_state(fabric), range);
+  return assembly.pairs().size();
+}
+
+TEST(SegmentPairs, NeighboursAlongAYarnOnlyWhereTheyCanTouch) {
+  // Straight: samples that are near lie too close along the yarn to touch.
+  EXPECT_EQ(pairs_in(fabric_of({free_yarn(9, 1.4, [](int i) { return Vec3{1.4 * i, 0, 0}; })})), 0U);
+  // On a circle of radius 0.7 d the yarn meets itself.
+  EXPECT_GT(
+      pairs_in(fabric_of({free_yarn(9, 0.5,
+                                    [](int i) {
+                                      return Vec3{0.7 * std::cos(0.7 * i), 0.7 * std::sin(0.7 * i), 0.02 * i};
+                                    })})),
+      0U);
+}
+
 TEST(SafeStep, AYarnPushedThroughAnotherStopsBeforeIt) {
   const Fabric fabric = two_yarns();
   for (const double push : {-1.3, -3.0, -50.0}) {

@@ -2,8 +2,10 @@
 // the first step, friction included.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 
+#include "base/parallel.hpp"
 #include "mechanics/linear/conjugate_gradient.hpp"
 #include "mechanics/linear/schwarz.hpp"
 #include "mechanics/newton.hpp"
@@ -35,9 +37,8 @@ Start start_of(const std::string& structure, int n) {
   return start;
 }
 
-// Largest force on control points of loops at least three rings inside the frame (control points are counted
-// from the yarns' ends, yarns from the first and last), with or without the cell's history.
-double force_inside(const Start& start, bool with_history) {
+// Largest force on any control point that the frame does not hold, with or without the cell's history.
+double largest_force(const Start& start, bool with_history) {
   const YarnModel model = build_yarn_model(start.fabric, start.options.model);
   const YarnState state = build_yarn_state(start.fabric);
   Assembly assembly(model);
@@ -47,29 +48,37 @@ double force_inside(const Start& start, bool with_history) {
   BlockMatrix hessian;
   assembly.hessian(state, gradient, hessian);
   double most = 0;
-  constexpr std::size_t rings = 3, points_per_loop = 12;
-  for (std::size_t y = rings; y + rings < model.yarns.size(); ++y)
-    for (int i = static_cast<int>(rings * points_per_loop);
-         i + static_cast<int>(rings * points_per_loop) < model.yarns[y].nodes; ++i)
-      most = std::max(most, norm(gradient.u[static_cast<std::size_t>(model.yarns[y].first_node + i)]));
+  for (const Vec3& force : gradient.u) most = std::max(most, norm(force));
   return most;
+}
+
+double held_share(const Fabric& fabric) {
+  double held = 0, all = 0;
+  for (const FabricYarn& yarn : fabric.yarns) {
+    held +=
+        static_cast<double>(std::count_if(yarn.held.begin(), yarn.held.end(), [](auto h) { return h != 0; }));
+    all += static_cast<double>(yarn.held.size());
+  }
+  return held / all;
 }
 
 class HeldPiece : public testing::TestWithParam<const char*> {};
 
-TEST_P(HeldPiece, IsAtRestInsideBeforeTheFirstStep) {
+TEST_P(HeldPiece, IsAtRestBeforeTheFirstStep) {
   const Start start = start_of(GetParam(), 10);
   EXPECT_FALSE(start.options.history.empty());
-  const double carried = force_inside(start, true), dropped = force_inside(start, false);
+  const double carried = largest_force(start, true), dropped = largest_force(start, false);
   EXPECT_LT(carried, 2 * start.options.tolerance);
   EXPECT_GT(dropped, 20 * carried) << "without its history friction holds nothing";
+  EXPECT_LT(held_share(start.fabric), 0.55) << "a frame that holds everything is no frame";
 }
 
 TEST_P(HeldPiece, RestsInFewStepsWithAllInterlacings) {
   const Start start = start_of(GetParam(), 8);
   const RelaxResult rest = relax(start.fabric, start.options);
   EXPECT_TRUE(rest.converged);
-  EXPECT_LE(rest.newton_iterations, 30);
+  // Nothing but the frame's measures is left to find: what the piece has cut off, the frame bears.
+  EXPECT_LE(rest.newton_iterations, 5);
   EXPECT_EQ(rest.pass_throughs, 0);
   const InterlacingCheck check = check_interlacings(rest.fabric);
   EXPECT_EQ(check.intact, check.expected);
@@ -77,7 +86,8 @@ TEST_P(HeldPiece, RestsInFewStepsWithAllInterlacings) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Structures, HeldPiece,
-                         testing::Values("plain", "rib", "garter", "half_cardigan", "lace"),
+                         testing::Values("plain", "rib", "garter", "half_cardigan", "full_cardigan", "cable",
+                                         "lace"),
                          [](const auto& structure) { return std::string(structure.param); });
 
 // Iterations that the two-level solver needs for the step after a pull on the frame.
@@ -98,8 +108,8 @@ int first_step_iterations(const Start& start) {
   constexpr double shift = 0.1;
   EXPECT_TRUE(schwarz.factor(hessian, shift));
   const ConjugateGradientResult solved = conjugate_gradient(
-      hessian, shift, [&](const Unknowns& r, Unknowns& z) { schwarz.solve(r, z); }, gradient, 1e-3, 300,
-      step);
+      hessian, shift, [&](const Unknowns& r, Unknowns& z) { schwarz.solve(r, z); }, gradient, 1e-3,
+      {.most = 300}, step);
   EXPECT_TRUE(solved.converged);
   Unknowns product;
   multiply(hessian, shift, step, product);
@@ -115,6 +125,29 @@ TEST(TwoLevelSolver, IterationsDoNotGrowWithThePiece) {
     EXPECT_GT(small, 5) << structure;
     EXPECT_LE(large, 1.5 * small) << structure << ": " << small << " with 400 loops, " << large
                                   << " with 1600";
+  }
+}
+
+TEST(TwoLevelSolver, IsTheSameToTheLastBitForAnyNumberOfThreads) {
+  Start start = start_of("plain", 28);
+  start.options.model.free.width = false;  // pulled, so that factors grow old
+  start.fabric.width *= 1.01;
+  for (FabricYarn& yarn : start.fabric.yarns)
+    for (Vec3& p : yarn.control_points) p.x *= 1.01;
+  start.options.most_iterations = 5;
+  std::vector<RelaxResult> results;
+  for (const int threads : {1, 3}) {
+    set_thread_count(threads);
+    results.push_back(relax(start.fabric, start.options));
+  }
+  set_thread_count(0);
+  EXPECT_GT(results[0].factorisations, 1) << "an old factor is to be given up";
+  EXPECT_EQ(results[0].linear_iterations, results[1].linear_iterations);
+  EXPECT_EQ(results[0].residual, results[1].residual);
+  for (std::size_t y = 0; y < start.fabric.yarns.size(); ++y) {
+    const auto &one = results[0].fabric.yarns[y].control_points,
+               &other = results[1].fabric.yarns[y].control_points;
+    for (std::size_t i = 0; i < one.size(); ++i) ASSERT_EQ(norm(one[i] - other[i]), 0) << y << ' ' << i;
   }
 }
 

@@ -33,17 +33,23 @@ bool apart(const SampleBox& a, const SampleBox& b, double range) {
   return false;
 }
 
-// Squared distance of the samples of two segments; `beyond2` where none is less.
-double smallest_distance2(const YarnModel& model, const SamplePlaces& p, int a, int b, const Vec3& image,
-                          double beyond2) {
-  const auto i0 = static_cast<std::size_t>(a * model.samples),
-             j0 = static_cast<std::size_t>(b * model.samples);
+// Squared distance of those samples of two segments that can touch; `beyond2` where none is less.
+double smallest_distance2(const YarnModel& model, const SamplePlaces& p, const SegmentPair& pair,
+                          const Vec3& image, double beyond2) {
+  const auto i0 = static_cast<std::size_t>(pair.a * model.samples),
+             j0 = static_cast<std::size_t>(pair.b * model.samples);
   const auto count = static_cast<std::size_t>(model.samples);
-  const SampleBox& box = p.boxes[static_cast<std::size_t>(b)];
+  const SampleBox& box = p.boxes[static_cast<std::size_t>(pair.b)];
   const SampleView others{&p.x[j0], &p.y[j0], &p.z[j0]};
   std::array<double, most_contact_samples> to_box2{}, d2;
   for (std::size_t i = 0; i < count; ++i)
     to_box2[i] = squared_distance(p.x[i0 + i] - image.x, p.y[i0 + i] - image.y, p.z[i0 + i] - image.z, box);
+  const YarnModel::Yarn& yarn = model.yarn_of(pair.a);
+  const double spacing = yarn.rest_length / model.samples, excluded = model.excluded * yarn.diameter;
+  // Neighbours along one yarn: samples closer than this along it do not touch, and are always near.
+  const auto along_yarn = [&](std::size_t i, std::size_t j) {
+    return std::abs(pair.arc_offset + (static_cast<double>(j) - static_cast<double>(i)) * spacing) < excluded;
+  };
   // The sample nearest to the box first: most others then need not be looked at.
   const auto first = static_cast<std::size_t>(
       std::min_element(to_box2.begin(), to_box2.begin() + static_cast<std::ptrdiff_t>(count)) -
@@ -51,8 +57,14 @@ double smallest_distance2(const YarnModel& model, const SamplePlaces& p, int a, 
   double nearest = beyond2;
   const auto look_at = [&](std::size_t i) {
     if (to_box2[i] >= nearest) return;
-    nearest = squared_distances(p.x[i0 + i] - image.x, p.y[i0 + i] - image.y, p.z[i0 + i] - image.z, others,
-                                count, nearest, d2.data());
+    const double least = squared_distances(p.x[i0 + i] - image.x, p.y[i0 + i] - image.y,
+                                           p.z[i0 + i] - image.z, others, count, nearest, d2.data());
+    if (!pair.same_yarn) {
+      nearest = least;
+      return;
+    }
+    for (std::size_t j = 0; j < count; ++j)
+      if (!along_yarn(i, j)) nearest = std::min(nearest, d2[j]);
   };
   look_at(first);
   for (std::size_t i = 0; i < count; ++i)
@@ -73,6 +85,7 @@ bool turns_ahead(const YarnModel::Yarn& yarn, int m, int n, int& turns) {
 std::vector<ImagedSegment> imaged_segments(const YarnModel& model, const YarnState& state,
                                            const SamplePlaces& places, double range, SampleBox& whole) {
   std::vector<ImagedSegment> all;
+  all.reserve(static_cast<std::size_t>(model.segments));
   whole = {{1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}};
   for (int e = 0; e < model.segments; ++e) {
     all.push_back({e, 0, 0, places.boxes[static_cast<std::size_t>(e)]});
@@ -122,6 +135,7 @@ void place_samples(const YarnModel& model, const std::vector<Vec3>& extended, Sa
   places.y.resize(count);
   places.z.resize(count);
   places.boxes.clear();
+  places.boxes.reserve(static_cast<std::size_t>(model.segments));
   std::size_t k = 0;
   for (int e = 0; e < model.segments; ++e) {
     const std::size_t begin = k;
@@ -214,8 +228,7 @@ void find_segment_pairs(const YarnModel& model, const YarnState& state, const Sa
               pair.same_yarn = (std::abs(ahead) - 1) * yarn.rest_length < excluded;
               pair.arc_offset = ahead * yarn.rest_length;
             }
-            pair.distance2 =
-                smallest_distance2(model, places, a, other.segment, state.lattice(other.m, other.n), range2);
+            pair.distance2 = smallest_distance2(model, places, pair, state.lattice(other.m, other.n), range2);
             if (pair.distance2 < range2) pairs.push_back(pair);
           }
         }
@@ -223,6 +236,8 @@ void find_segment_pairs(const YarnModel& model, const YarnState& state, const Sa
   std::sort(pairs.begin(), pairs.end(), [](const SegmentPair& p, const SegmentPair& q) {
     return std::tie(p.a, p.b, p.m, p.n) < std::tie(q.a, q.b, q.m, q.n);
   });
+  // The list outlives the search: what a large piece's has grown too long by is given back.
+  if (pairs.capacity() > pairs.size() + pairs.size() / 4) pairs.shrink_to_fit();
 }
 
 }  // namespace loopwright

@@ -19,7 +19,7 @@ struct SegmentPair {
   std::int8_t m = 0, n = 0;
   bool same_yarn = false;  // the image continues a's own yarn: arc_offset is then meant
   double arc_offset = 0;   // arc of b's first sample minus that of a's first sample along the unwrapped yarn
-  double distance2 = 0;    // smallest squared distance of samples when the list was made
+  double distance2 = 0;    // smallest squared distance of samples that can touch, when the list was made
 };
 
 void expand(const YarnModel& model, const YarnState& state, std::vector<Vec3>& extended);

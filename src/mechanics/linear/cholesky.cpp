@@ -196,13 +196,22 @@ struct Cholesky::Factor {
       for (int d = 0; d < 3; ++d) order.push_back(3 * i + d);
     best_entries = 0;
   }
+  void clear() {
+    single = {};
+    cholmod_free_factor(&factor, &common);
+    forget_pattern();
+  }
+  void forget_pattern() {  // assigning {} would keep the memory
+    std::vector<std::int32_t>().swap(row_start);
+    std::vector<std::int32_t>().swap(column);
+  }
   void compact() {
     if (!factor) return;
     single = SupernodalSingle(*factor);
     cholmod_free_factor(&factor, &common);
     cholmod_free_work(&common);
     lower = {};
-    row_start = column = {};
+    forget_pattern();
     // Found again sooner than kept, for the many small factors of a large piece.
     if (unknowns < small_order) std::vector<int>().swap(order);
   }
@@ -251,6 +260,7 @@ struct Cholesky::Factor {
             lower.start.data(), lower.row.data(), lower.value.data()};
   }
   void compact() {}
+  void clear() {}
   void analyse(const BlockMatrix&) { factorisation.analyzePattern(view()); }
   bool numeric() {
     factorisation.factorize(view());
@@ -270,6 +280,8 @@ Cholesky::Cholesky() : factor_(std::make_unique<Factor>()) {}
 Cholesky::~Cholesky() = default;
 
 void Cholesky::compact() { factor_->compact(); }
+
+void Cholesky::clear() { factor_->clear(); }
 
 double Cholesky::factor_entries() const { return factor_->entries(); }
 

@@ -29,6 +29,8 @@ class Cholesky {
   // solution must read, and nothing of what only factoring needs. Good for a preconditioner; solve() is then
   // right to about six digits. The next factor() works anew. Without CHOLMOD nothing changes.
   void compact();
+  // Gives up the factor, and its memory. With CHOLMOD alone: otherwise nothing changes.
+  void clear();
   // Entries of the factor, for reports.
   double factor_entries() const;
 

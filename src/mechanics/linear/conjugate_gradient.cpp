@@ -1,23 +1,47 @@
 #include "mechanics/linear/conjugate_gradient.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
 namespace loopwright {
+namespace {
+
+// Whether the residual falls too slowly: `squares`, one for every iteration, to come down to `wanted`. The
+// pace is that of the later half; before that there is nothing to go by.
+bool too_slow(const std::vector<double>& squares, double wanted, int patience) {
+  constexpr std::size_t least = 8;
+  if (patience < 0 || squares.size() < least) return false;
+  const std::size_t half = squares.size() / 2;
+  const double pace =
+      std::log(squares[squares.size() - 1 - half] / squares.back()) / static_cast<double>(half);
+  return !(std::log(squares.back() / wanted) <= patience * pace);
+}
+
+}  // namespace
 
 ConjugateGradientResult conjugate_gradient(const BlockMatrix& matrix, double shift,
                                            const Preconditioner& preconditioner, const Unknowns& b,
-                                           double tolerance, int most, Unknowns& x) {
+                                           double tolerance, const ConjugateGradientLimits& limits,
+                                           Unknowns& x) {
   ConjugateGradientResult result;
   Unknowns r = b, z, p, Ap;
-  x.u.assign(b.u.size(), Vec3{});
-  x.g = {};
   preconditioner(r, z);
-  p = z;
   double rz = dot(r, z);
   const double wanted = tolerance * tolerance * rz;
-  while (result.iterations < most) {
-    if (!(rz > wanted)) {
-      result.converged = true;
-      break;
-    }
+  if (limits.go_on) {
+    multiply(matrix, shift, x, Ap);
+    axpy(-1, Ap, r);
+    preconditioner(r, z);
+    rz = dot(r, z);
+  } else {
+    x.u.assign(b.u.size(), Vec3{});
+    x.g = {};
+  }
+  p = z;
+  const double start = rz;
+  std::vector<double> squares;
+  while (rz > wanted && result.iterations < limits.most && !too_slow(squares, wanted, limits.patience)) {
     multiply(matrix, shift, p, Ap);
     ++result.iterations;
     const double curvature = dot(p, Ap);
@@ -31,9 +55,12 @@ ConjugateGradientResult conjugate_gradient(const BlockMatrix& matrix, double shi
     preconditioner(r, z);
     const double next = dot(r, z), beta = next / rz;
     rz = next;
+    squares.push_back(rz);
     for (std::size_t i = 0; i < p.u.size(); ++i) p.u[i] = z.u[i] + beta * p.u[i];
     for (std::size_t k = 0; k < 3; ++k) p.g[k] = z.g[k] + beta * p.g[k];
   }
+  if (start > 0) result.reduction = std::sqrt(std::max(0.0, rz / start));
+  result.converged = !result.indefinite && !(rz > wanted);
   return result;
 }
 

@@ -13,12 +13,19 @@ struct ConjugateGradientResult {
   bool converged = false;
   bool indefinite = false;  // a direction of negative curvature was met: A + shift D is not positive definite
   int iterations = 0;
+  double reduction = 1;  // what is left of the residual that it started from
 };
 
-// Stops when the residual, in the preconditioner's norm, has fallen by `tolerance`, or after `most`
-// iterations.
+struct ConjugateGradientLimits {
+  int most = 200;      // iterations
+  int patience = -1;   // gives up when, at the pace of late, more than so many iterations are left; -1: never
+  bool go_on = false;  // x holds where to start from; otherwise it starts from zero
+};
+
+// Stops when the residual, in the preconditioner's norm, is `tolerance` of that of b, or at its limits.
 ConjugateGradientResult conjugate_gradient(const BlockMatrix& matrix, double shift,
                                            const Preconditioner& preconditioner, const Unknowns& b,
-                                           double tolerance, int most, Unknowns& x);
+                                           double tolerance, const ConjugateGradientLimits& limits,
+                                           Unknowns& x);
 
 }  // namespace loopwright

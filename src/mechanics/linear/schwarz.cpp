@@ -4,6 +4,9 @@
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 #include "base/parallel.hpp"
 #include "mechanics/linear/conjugate_gradient.hpp"
@@ -96,12 +99,12 @@ void Schwarz::set_patches(const std::vector<Vec3>& places, const std::vector<std
   for (std::size_t i = 0; i < places.size(); ++i)
     own[grid.cell(places[i])].push_back(static_cast<std::int32_t>(i));
   levels_.clear();
-  const auto add_level = [this](CoarseSpace space) {
+  plate_ = plate_space(places, held, grid.nx, grid.ny);
+  for (const CoarseSpace* space : {&coarse, static_cast<const CoarseSpace*>(&plate_)}) {
+    if (space->points == 0) continue;
     levels_.push_back(std::make_unique<Level>());
-    levels_.back()->space = std::move(space);
-  };
-  if (coarse.points > 0) add_level(coarse);
-  add_level(plate_space(places, held, grid.nx, grid.ny));
+    levels_.back()->space = space;
+  }
   answers_.clear();
 
   patches_.clear();
@@ -134,18 +137,16 @@ void Schwarz::number_results() {
 }
 
 bool Schwarz::factor(const BlockMatrix& matrix, double shift) {
-  std::atomic<bool> definite{true};
-  parallel_chunks(static_cast<int>(patches_.size()), [&](int p) {
-    if (!definite) return;  // the answer is known; patches are left as they are
-    Patch& patch = *patches_[place(p)];
-    if (!patch.factor.factor(patch_matrix(matrix, patch.nodes), shift)) definite = false;
-    patch.factor.compact();
-  });
-  if (!definite) return false;
+  // Coarse spaces first: the binding points' factor is the largest and needs the most room while it is made.
+  for (const auto& patch : patches_) patch->factor.clear();
+#ifdef __GLIBC__
+  // The heap keeps what thousands of small factors leave behind; the coarse factors are too large for it.
+  if (!answers_.empty()) malloc_trim(0);
+#endif
   for (const auto& level : levels_) {
     BlockMatrix seen;
-    level->space.project(matrix, shift, seen);
-    if (level->space.rows.empty())
+    level->space->project(matrix, shift, seen);
+    if (level->space->rows.empty())
       for (std::int32_t r = 0; r < seen.rows(); ++r) {
         Block& own = seen.block[seen.place(r, r)];
         for (const std::size_t d : {0, 4, 8}) own[d] *= 1 + ridge;
@@ -153,7 +154,14 @@ bool Schwarz::factor(const BlockMatrix& matrix, double shift) {
     if (!level->factor.factor(seen, 0)) return false;
     level->factor.compact();
   }
-  return answer_measures(matrix, shift);
+  std::atomic<bool> definite{true};
+  parallel_chunks(static_cast<int>(patches_.size()), [&](int p) {
+    if (!definite) return;  // the answer is known
+    Patch& patch = *patches_[place(p)];
+    if (!patch.factor.factor(patch_matrix(matrix, patch.nodes), shift)) definite = false;
+    patch.factor.compact();
+  });
+  return definite && answer_measures(matrix, shift);
 }
 
 bool Schwarz::answer_measures(const BlockMatrix& matrix, double shift) {
@@ -171,7 +179,7 @@ bool Schwarz::answer_measures(const BlockMatrix& matrix, double shift) {
     Unknowns change;
     const ConjugateGradientResult solved = conjugate_gradient(
         matrix, shift, [this](const Unknowns& r, Unknowns& z) { solve_points(r, z); }, product, 1e-3,
-        known ? known_iterations : fresh_iterations, change);
+        {.most = known ? known_iterations : fresh_iterations}, change);
     iterations += solved.iterations;
     if (solved.indefinite) return false;
     for (std::size_t i = 0; i < control_points_; ++i) answer.u[i] -= change.u[i];
@@ -211,9 +219,9 @@ void Schwarz::solve_points(const Unknowns& b, Unknowns& x) {
     }
   });
   for (const auto& level : levels_) {
-    level->space.restricted(b.u, level->right.u);
+    level->space->restricted(b.u, level->right.u);
     level->factor.solve(level->right, level->result);
-    level->space.add_prolonged(level->result.u, x.u);
+    level->space->add_prolonged(level->result.u, x.u);
   }
 }
 

@@ -26,7 +26,7 @@ namespace loopwright {
 class Schwarz {
  public:
   // Control points by their places in the plane. `coarse`, beside the plate, has a row for each of them or no
-  // points.
+  // points; it is not copied and must stay.
   void set_patches(const std::vector<Vec3>& places, const std::vector<std::uint8_t>& held,
                    const BlockMatrix& matrix, const CoarseSpace& coarse);
   bool ready() const { return !patches_.empty(); }
@@ -45,7 +45,7 @@ class Schwarz {
 
   // A coarse space with the factor of the matrix that it sees.
   struct Level {
-    CoarseSpace space;
+    const CoarseSpace* space = nullptr;
     Cholesky factor;
     Unknowns right, result;
   };
@@ -58,6 +58,7 @@ class Schwarz {
   std::vector<std::unique_ptr<Patch>> patches_;
   std::vector<std::array<float, 3>> results_;           // of all patches' control points
   std::vector<std::int32_t> result_start_, result_at_;  // [control point] its places among the results
+  CoarseSpace plate_;
   std::vector<std::unique_ptr<Level>> levels_;
   std::vector<Unknowns> answers_;  // W, for width, height, skew
   Block measures_inverse_{};       // (W' K W)^-1

@@ -1,6 +1,7 @@
 #include "mechanics/linear/step_solver.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace loopwright {
 namespace {
@@ -10,6 +11,7 @@ constexpr int few_nodes = 1000;   // below: factoring costs less than anything c
 constexpr int many_nodes = 8000;  // above: a whole factor costs too much, see linear/schwarz.hpp
 constexpr int most_inner = 24;    // more products and solves than this cost more than a new factor
 constexpr int most_patched = 200;
+constexpr int patched_factor = 35;  // iterations that take as long as factoring all patches and coarse spaces
 constexpr int most_raises = 60;
 
 double raised_shift(double shift) { return std::max(4 * shift, 1e-4); }
@@ -28,7 +30,7 @@ StepSolver::Report StepSolver::solve(const BlockMatrix& hessian, const YarnState
     if (current_ && model_.nodes > few_nodes) {
       const ConjugateGradientResult cg = conjugate_gradient(
           hessian, shift, [this](const Unknowns& r, Unknowns& z) { cholesky_.solve(r, z); }, gradient,
-          accuracy, most_inner, step);
+          accuracy, {.most = most_inner}, step);
       iterations += cg.iterations;
       report.solved = cg.converged;
       current_ = cg.converged && cg.iterations <= most_inner / 2;
@@ -58,23 +60,30 @@ bool StepSolver::solve_patched(const BlockMatrix& hessian, const YarnState& stat
                                double accuracy, double& shift, int& raised, Unknowns& step) {
   if (!schwarz_.ready()) schwarz_.set_patches(state.nodes, model_.held, hessian, model_.binding_points);
   const auto precondition = [this](const Unknowns& r, Unknowns& z) { schwarz_.solve(r, z); };
-  // First with the factor at hand, allowed up to twice its usual number of iterations.
+  const double digits = std::log(1 / accuracy);
+  // First with the factor at hand, until a new one and its iterations would take less than what is left. What
+  // was reached by then is gone on from.
+  ConjugateGradientLimits limits{.most = most_patched};
   if (current_) {
-    const ConjugateGradientResult cg = conjugate_gradient(hessian, shift, precondition, gradient, accuracy,
-                                                          std::min(most_patched, 2 * usual_ + 10), step);
+    limits.patience = patched_factor + static_cast<int>(usual_ * digits);
+    const ConjugateGradientResult cg =
+        conjugate_gradient(hessian, shift, precondition, gradient, accuracy, limits, step);
     iterations += cg.iterations;
     if (cg.converged) return true;
+    limits.patience = -1;
+    limits.go_on = !cg.indefinite;
+    if (cg.indefinite) ++raised, shift = raised_shift(shift);
   }
-  for (; raised <= most_raises; ++raised, shift = raised_shift(shift)) {
+  for (; raised <= most_raises; ++raised, shift = raised_shift(shift), limits.go_on = false) {
     ++factorisations;
     const int before = schwarz_.iterations;
     current_ = schwarz_.factor(hessian, shift);
     iterations += schwarz_.iterations - before;
     if (!current_) continue;
     const ConjugateGradientResult cg =
-        conjugate_gradient(hessian, shift, precondition, gradient, accuracy, most_patched, step);
+        conjugate_gradient(hessian, shift, precondition, gradient, accuracy, limits, step);
     iterations += cg.iterations;
-    usual_ = cg.iterations;
+    if (cg.reduction < 1) usual_ = cg.iterations / std::log(1 / cg.reduction);
     if (!cg.indefinite) return true;  // not quite converged is still a good direction
   }
   return false;

@@ -33,13 +33,24 @@ SupernodalSingle::SupernodalSingle(const cholmod_factor& factor)
     : order_(integers(factor.Perm, factor.n)),
       first_(integers(factor.super, factor.nsuper + 1)),
       row_start_(integers(factor.pi, factor.nsuper + 1)),
-      value_start_(integers(factor.px, factor.nsuper + 1)),
       row_(integers(factor.s, factor.ssize)) {
   const double* x = static_cast<const double*>(factor.x);
-  value_.resize(factor.xsize);
-  for (std::size_t k = 0; k < factor.xsize; ++k) value_[k] = static_cast<float>(x[k]);
-  for (std::size_t k = 0; k + 1 < row_start_.size(); ++k)
-    most_rows_ = std::max(most_rows_, size(row_start_[k + 1] - row_start_[k]));
+  const int* from = static_cast<const int*>(factor.px);
+  const std::size_t supernodes = factor.nsuper;
+  const auto rows_of = [this](std::size_t k) { return size(row_start_[k + 1] - row_start_[k]); };
+  const auto columns_of = [this](std::size_t k) { return size(first_[k + 1] - first_[k]); };
+  value_start_.assign(1, 0);
+  for (std::size_t k = 0; k < supernodes; ++k) {
+    const std::size_t rows = rows_of(k), columns = columns_of(k);
+    value_start_.push_back(value_start_.back() + rows * columns - columns * (columns - 1) / 2);
+    most_rows_ = std::max(most_rows_, rows);
+  }
+  // CHOLMOD's columns are whole; what lies above the diagonal, a fifth of all, is left behind.
+  value_.reserve(value_start_.back());
+  for (std::size_t k = 0; k < supernodes; ++k)
+    for (std::size_t j = 0, rows = rows_of(k); j < columns_of(k); ++j)
+      for (std::size_t i = j; i < rows; ++i)
+        value_.push_back(static_cast<float>(x[size(from[k]) + j * rows + i]));
 }
 
 void SupernodalSingle::solve(const double* b, double* x) const {
@@ -52,10 +63,13 @@ void SupernodalSingle::solve(const double* b, double* x) const {
                       columns = size(first_[k + 1] - first_[k]);
     for (std::size_t i = 0; i < rows; ++i) part[i] = y[size(row[i])];
     const float* column = value_.data() + value_start_[k];
-    for (std::size_t j = 0; j < columns; ++j, column += rows) {
-      const float v = part[j] / column[j];
-      part[j] = v;
-      for (std::size_t i = j + 1; i < rows; ++i) part[i] -= column[i] * v;
+    for (std::size_t j = 0; j < columns; ++j) {
+      const std::size_t length = rows - j;
+      float* below = part.data() + j;
+      const float v = *below / *column;
+      *below = v;
+      for (std::size_t i = 1; i < length; ++i) below[i] -= column[i] * v;
+      column += length;
     }
     for (std::size_t i = 0; i < rows; ++i) y[size(row[i])] = part[i];
   }
@@ -64,9 +78,10 @@ void SupernodalSingle::solve(const double* b, double* x) const {
     const std::size_t rows = size(row_start_[k + 1] - row_start_[k]),
                       columns = size(first_[k + 1] - first_[k]);
     for (std::size_t i = 0; i < rows; ++i) part[i] = y[size(row[i])];
+    const float* column = value_.data() + value_start_[k + 1];
     for (std::size_t j = columns; j-- > 0;) {
-      const float* column = value_.data() + value_start_[k] + j * rows;
-      part[j] = (part[j] - dot(column + j + 1, part.data() + j + 1, rows - j - 1)) / column[j];
+      column -= rows - j;
+      part[j] = (part[j] - dot(column + 1, part.data() + j + 1, rows - j - 1)) / *column;
     }
     for (std::size_t j = 0; j < columns; ++j) y[size(row[j])] = part[j];
   }

@@ -20,8 +20,9 @@ class SupernodalSingle {
 
  private:
   // Supernode k: columns first_[k] .. first_[k + 1], rows row_[row_start_[k]] .. row_[row_start_[k + 1]]
-  // (its own columns first); values by columns from value_start_[k].
-  std::vector<int> order_, first_, row_start_, value_start_, row_;
+  // (its own columns first); values by columns from value_start_[k], each from its diagonal on.
+  std::vector<int> order_, first_, row_start_, row_;
+  std::vector<std::size_t> value_start_;
   std::vector<float> value_;
   std::size_t most_rows_ = 0;  // of a supernode
 };

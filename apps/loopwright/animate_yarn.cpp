@@ -123,6 +123,27 @@ struct Moment {
   Fabric fabric;
 };
 
+// An interlacing that was whole at the start and is no more; nothing if there is none.
+const PlacedInterlacing* first_lost(const Fabric& fabric, const std::vector<int>& broken_before) {
+  for (const int k : check_interlacings(fabric).broken)
+    if (!std::binary_search(broken_before.begin(), broken_before.end(), k))
+      return &fabric.interlacings[static_cast<std::size_t>(k)];
+  return nullptr;
+}
+
+// Along the courses.
+double extent(const Fabric& fabric) {
+  const Bounds bounds = fabric_bounds(fabric, {1, 1});
+  return bounds.upper.x - bounds.lower.x;
+}
+
+// Where the loop of an interlacing stands in the notation.
+SourceLocation place_of(const Fabric& fabric, LoopId loop) {
+  for (const LoopSpan& span : fabric.loops)
+    if (span.loop == loop) return span.at;
+  return {};
+}
+
 }  // namespace
 
 int animate_yarn(const AnimateCommand& command) {
@@ -163,11 +184,17 @@ int animate_yarn(const AnimateCommand& command) {
   std::vector<Moment> moments{{0, relaxed.fabric}};
   StepReport all;
   const std::vector<Vec3> from = motion.state().place;
+  // Bindings keep yarn on yarn, but nothing keeps a loop's yarn in its loop or on its side: before a step
+  // that loses an interlacing the motion stops.
+  const bool may_lose = command.binding != "contact";
+  std::vector<int> broken_before = check_interlacings(relaxed.fabric).broken;
+  std::sort(broken_before.begin(), broken_before.end());
+  std::string stopped;  // why, if it did
   const auto start = std::chrono::steady_clock::now();
   {
     ProgressBar bar("moving");
-    for (int frame = 1; frame < frames && !interrupted(); ++frame) {
-      for (int k = 1; k <= steps && !interrupted(); ++k) {
+    for (int frame = 1; frame < frames && stopped.empty() && !interrupted(); ++frame) {
+      for (int k = 1; k <= steps && stopped.empty() && !interrupted(); ++k) {
         std::vector<Vec3> held;
         if (!load.target.empty()) {
           // The edge is pulled over the first three quarters, then held.
@@ -176,12 +203,30 @@ int animate_yarn(const AnimateCommand& command) {
           held = from;
           for (std::size_t i = 0; i < held.size(); ++i) held[i] += share * (load.target[i] - from[i]);
         }
+        const MotionState before = motion.state();
         const StepReport report = motion.step(between / steps, held);
         all.newton += report.newton;
         all.halvings += report.halvings;
         all.pass_throughs += report.pass_throughs;
         if (!report.converged) all.converged = false;
+        if (!may_lose) continue;
+        const Fabric moved = with_places(relaxed.fabric, motion.state().place);
+        if (const PlacedInterlacing* lost = first_lost(moved, broken_before)) {
+          const Fabric last = with_places(relaxed.fabric, before.place);
+          std::ostringstream why;
+          why.precision(3);
+          why << "stopped at " << before.time * units.time_s << " s of " << seconds << " s";
+          if (command.stretch != 0)
+            why << ", pulled by " << 100 * (extent(last) / extent(relaxed.fabric) - 1) << " %";
+          why << ": in the next step the loop of line " << place_of(moved, lost->child).line << ", column "
+              << place_of(moved, lost->child).column
+              << " would slip out of the loop that it is drawn through. " << command.binding
+              << " bindings hold small motion only: pull less, or take --binding contact";
+          stopped = why.str();
+          moments.push_back({before.time * units.time_s, last});
+        }
       }
+      if (!stopped.empty()) break;
       moments.push_back(
           {motion.state().time * units.time_s, with_places(relaxed.fabric, motion.state().place)});
       bar.show(static_cast<double>(frame) / frames, std::to_string(all.newton) + " Newton steps");
@@ -226,12 +271,13 @@ int animate_yarn(const AnimateCommand& command) {
        << " B/d\n";
   std::cout << line.str();
   if (!all.converged) std::cerr << command.file << ": warning: some steps did not come to their tolerance\n";
+  if (!stopped.empty()) std::cerr << command.file << ": error: " << stopped << "\n";
   const bool broken = lost > 0 || all.pass_throughs > 0;
   if (broken)
     std::cerr << command.file
               << ": error: broken: interlacings are lost, or yarn may have passed through yarn\n";
   if (interrupted()) return exit_interrupted;
-  return broken ? exit_error : exit_good;
+  return broken || !stopped.empty() ? exit_error : exit_good;
 }
 
 }  // namespace loopwright

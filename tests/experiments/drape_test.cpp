@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "experiments/rest_hessian.hpp"
@@ -88,6 +89,72 @@ TEST(Drape, AHangingStripGivesAsItsStretchCurve) {
     ASSERT_EQ(strip.strain.size(), 15U);
     for (std::size_t k = c.first; k < 13; ++k)
       EXPECT_NEAR(strip.strain[k], strain_at(curve, strip.force_N_m[k]), 0.05 * strip.strain[k]) << k;
+  }
+}
+
+// The two control points nearest to a place on a yarn.
+template <class Visit>
+void at_place(const Fabric& fabric, int yarn, double place, const Visit& visit) {
+  const auto last = static_cast<int>(fabric.yarns[static_cast<std::size_t>(yarn)].control_points.size()) - 1;
+  for (int k = 1; k <= 2; ++k)
+    visit(static_cast<std::size_t>(std::clamp(static_cast<int>(place) + k, 0, last)));
+}
+
+// A piece as it hangs on the needles: the heads of its last course are held, a comb pulls at the feet of its
+// first one (an open first course would slip out of the second), and once it is knitted no plate keeps it
+// flat.
+TEST(Drape, APieceHangsFromItsLastLoops) {
+  for (const char* courses : {"ge", "g\ne"}) {
+    SCOPED_TRACE(courses);
+    RelaxOptions options = frictionless();
+    options.model.material.reference_bend_N_m2 = 1e-8;
+    options.model.material.friction = 0.25;
+    options.model.free = {false, false, false};
+    Fabric first = knitted(courses, "free", "6 wales x 6 courses", 15);
+    first.diameter_mm = 0.4;
+    std::vector<std::vector<std::uint8_t>> combed;
+    for (FabricYarn& yarn : first.yarns) {
+      yarn.linear_density_tex = 80;
+      yarn.held.assign(yarn.control_points.size(), 0);
+      combed.emplace_back(yarn.control_points.size(), std::uint8_t{0});
+    }
+    int held = 0;
+    for (const LoopSpan& loop : first.loops) {
+      const auto yarn = static_cast<std::size_t>(loop.yarn);
+      if (loop.course == 5)
+        at_place(first, loop.yarn, loop.apex, [&](std::size_t k) { first.yarns[yarn].held[k] = 1, ++held; });
+      if (loop.course == 0)
+        for (const double foot : {loop.begin, loop.end})
+          at_place(first, loop.yarn, foot, [&](std::size_t k) { combed[yarn][k] = 1; });
+    }
+    ASSERT_EQ(held, 12);
+    // The yarn's end is tied to the needles too, or it slips out of the last loop.
+    for (std::size_t k = 1; k <= 3; ++k)
+      first.yarns.back().held.rbegin()[static_cast<std::ptrdiff_t>(k) - 1] = 1;
+    std::vector<Vec3> pull;
+    for (const std::vector<std::uint8_t>& points : combed)
+      for (const std::uint8_t point : points) pull.push_back(point ? Vec3{0, -1, 0} : Vec3{});
+
+    options.model.point_loads = pull;
+    RelaxResult piece = relax(first, options);
+    ASSERT_TRUE(piece.converged) << piece.message;
+    options.grow_in = false;
+    options.plate_room = -1;
+    options.history = piece.history;
+    options.model.point_loads = weight_loads(piece.fabric, options.model.material, {0, -9.81, 0});
+    for (std::size_t i = 0; i < pull.size(); ++i) options.model.point_loads[i] += pull[i];
+    piece = relax(piece.fabric, options);
+    ASSERT_TRUE(piece.converged) << piece.message;
+    EXPECT_EQ(piece.pass_throughs, 0);
+    const InterlacingCheck check = check_interlacings(piece.fabric);
+    EXPECT_EQ(check.intact, check.expected);
+    EXPECT_EQ(check.expected, 30);
+    const Vec3 borne = support_force(piece.fabric, options.model, piece.history),
+               load = total_load(piece.fabric, options.model);
+    EXPECT_LT(load.y, 0);
+    EXPECT_NEAR(borne.y, -load.y, 1e-3 * -load.y);
+    EXPECT_NEAR(borne.x, 0, 1e-3 * -load.y);
+    EXPECT_NEAR(borne.z, 0, 1e-3 * -load.y);
   }
 }
 

@@ -41,8 +41,12 @@ void check_history(const Fabric& first, const RelaxOptions& options, const Knitt
           "the gap of the plates must be a number of millimetres, 0 or more");
   require(first.width > 0 && first.height > 0,
           "only a periodic cell or a piece with a frame has a width on the machine");
-  require(history.take_down_N == 0 || options.model.material.reference_bend_N_m2 > 0,
-          "take-down needs the yarn's bend stiffness: name a material or give the yarn its data");
+  require(history.hand_pull_N_m >= 0 && std::isfinite(history.hand_pull_N_m),
+          "the pull by hand must be a number of newtons a metre, 0 or more");
+  require((history.take_down_N == 0 && history.hand_pull_N_m == 0) ||
+              options.model.material.reference_bend_N_m2 > 0,
+          "take-down and a pull by hand need the yarn's bend stiffness: name a material or give the yarn its "
+          "data");
 }
 
 void add_counts(RelaxResult& to, const RelaxResult& from) {
@@ -50,6 +54,16 @@ void add_counts(RelaxResult& to, const RelaxResult& from) {
   to.linear_iterations += from.linear_iterations;
   to.factorisations += from.factorisations;
   to.pass_throughs += from.pass_throughs;
+}
+
+// From where it is under another load; counts are those of the whole way.
+RelaxResult goes_on(const RelaxResult& from, RelaxOptions options, const Measures& load) {
+  options.model.load = load;
+  options.history = from.history;
+  RelaxResult next = relax(from.fabric, options);
+  add_counts(next, from);
+  next.converged = next.converged && from.converged;
+  return next;
 }
 
 }  // namespace
@@ -75,6 +89,12 @@ KnittedRest relax_as_knitted(const Fabric& first, const RelaxOptions& options,
   released.most_iterations = std::max(1, options.most_iterations - rest.on_machine.newton_iterations);
   rest.relaxed = relax(rest.on_machine.fabric, released);
   add_counts(rest.relaxed, rest.on_machine);
+  if (history.hand_pull_N_m > 0) {
+    const double force = options.model.material.reference_bend_N_m2 / (d * d * 1e-6);  // B/d^2 in N
+    const double tension = history.hand_pull_N_m * d * 1e-3 / force;                   // B/d^3
+    const Measures load{tension * rest.relaxed.fabric.height, tension * rest.relaxed.fabric.width, 0};
+    for (const Measures& pull : {load, Measures{}}) rest.relaxed = goes_on(rest.relaxed, released, pull);
+  }
   return rest;
 }
 

@@ -1,5 +1,6 @@
 // What a fabric is like when it is measured depends, with friction, on what it went through: it was knitted
-// at the pitch of the needles, under take-down, then let go; and it is measured flat.
+// at the pitch of the needles, under take-down, then let go, and pulled straight by hand; and it is measured
+// flat.
 #pragma once
 #include "mechanics/relax.hpp"
 
@@ -11,6 +12,7 @@ struct KnittingHistory {
   // Kept flat, on the needles and after: between plates that leave the outermost centrelines so far apart; 0:
   // not at all. A jersey rolls up if it may, and no ruler is laid to cloth like that.
   double flat_gap_mm = 0;
+  double hand_pull_N_m = 0;  // tension along the courses and the wales at once, let go again; 0: not pulled
 };
 
 struct KnittedRest {
@@ -18,8 +20,9 @@ struct KnittedRest {
   RelaxResult relaxed;     // let go; its counts of steps are those of both
 };
 
-// `first`: a first geometry of a periodic cell, or of a piece whose frame can move. Relaxed twice, between
-// the plates: with the machine's width and take-down, then free, friction keeping its history. Throws
+// `first`: a first geometry of a periodic cell, or of a piece whose frame can move. Relaxed between the
+// plates with the machine's width and take-down (set there, if options.set says so), then free, then pulled
+// both ways and let go, friction keeping its history. Throws
 // std::invalid_argument for a history that cannot be, for a load without the yarn's reference_bend_N_m2, and
 // like relax().
 KnittedRest relax_as_knitted(const Fabric& first, const RelaxOptions& options,

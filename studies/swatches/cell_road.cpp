@@ -101,6 +101,7 @@ KnittedRest relax_first(const Fabric& first, const YarnGraph& graph, const Progr
   history.machine_width_mm = needles * 25.4 / machine.gauge_npi;
   history.take_down_N = needles * machine.take_down_N;
   history.flat_gap_mm = (1 - share) * machine.one_layer_mm + share * machine.two_layers_mm;
+  history.hand_pull_N_m = machine.hand_pull_N_m;
   return relax_as_knitted(first, swatch_options(first, program, most_iterations), history);
 }
 

@@ -15,9 +15,11 @@ struct MachineModel {
   double take_down_N = 0.02;  // of a wale
   // Laid flat: room for the centrelines of jersey (one layer of stitches, and a diameter for yarn that
   // crosses it) and of cloth whose stitches show both faces.
-  double one_layer_mm = 1.0, two_layers_mm = 1.90;
+  double one_layer_mm = 1.0, two_layers_mm = 1.80;
+  double hand_pull_N_m = 10;  // cloth is pulled straight both ways before it is laid: 100 g on a width of 10 cm
   // Yarn.
   double diameter_mm = 0.405, bend_stiffness_mN_mm2 = 12.7, friction = 0.25, linear_density_tex = 70.0;
+  double set = 0.5;  // of the curvature that it has on the needles: what bent acrylic yarn loses in time
   // Of the stretched swatches, 608 g: along the courses, borne by all of them, and along the wales.
   double course_load_N = 5.96, wale_load_N = 0;
 };
@@ -27,6 +29,7 @@ inline void apply(const MachineModel& machine, Program& program) {
   program.settings.gauge_npi = machine.gauge_npi;
   program.settings.loop_length_mm = machine.loop_length_mm;
   program.settings.bed_change_mm = machine.bed_change_mm;
+  program.settings.set = machine.set;
   for (YarnData& yarn : program.yarns) {
     yarn = {};
     yarn.material = "Tamm Petit 2/30";

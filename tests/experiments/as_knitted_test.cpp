@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 #include "experiments/stretch.hpp"
@@ -96,6 +97,36 @@ TEST(AsKnitted, FrictionRemembersTheNeedles) {
   const double d = first.diameter_mm * 1e-3;
   EXPECT_NEAR(pulled.on_machine.measure_forces[1] * bend_stiffness / (d * d), 0.02, 1e-4);  // N
   EXPECT_NEAR(pulled.relaxed.measure_forces[1], 0, 1e-3);
+}
+
+// Pulled both ways and let go: with friction a rib stays wider than it came from the needles, plain without
+// it goes back (such a rib has two shapes of rest), and neither bears anything in the end.
+TEST(AsKnitted, APullByHandLeavesWhatFrictionHolds) {
+  for (const double friction : {0.0, 0.25}) {
+    const Fabric first = knitted(friction > 0 ? "ge" : "g", "periodic", "");
+    const RelaxOptions options = with_friction(friction);
+    KnittingHistory history = history_of(first, 1, 0);
+    const RelaxResult as_it_came = relax_as_knitted(first, options, history).relaxed;
+    history.hand_pull_N_m = 10;
+    const RelaxResult pulled = relax_as_knitted(first, options, history).relaxed;
+    ASSERT_TRUE(as_it_came.converged && pulled.converged);
+    const InterlacingCheck check = check_interlacings(pulled.fabric);
+    EXPECT_EQ(check.intact, check.expected);
+    EXPECT_EQ(pulled.pass_throughs, 0);
+    EXPECT_GT(pulled.newton_iterations, as_it_came.newton_iterations);
+    for (const int k : {0, 1}) EXPECT_NEAR(pulled.measure_forces[static_cast<std::size_t>(k)], 0, 1e-3);
+    const double wider = pulled.fabric.width / as_it_came.fabric.width - 1;
+    std::printf("pulled by hand, friction %.2f: %.4f x %.4f d, was %.4f x %.4f\n", friction,
+                pulled.fabric.width, pulled.fabric.height, as_it_came.fabric.width, as_it_came.fabric.height);
+    if (friction > 0)
+      EXPECT_GT(wider, 0.01);
+    else
+      EXPECT_NEAR(wider, 0, 0.005);
+  }
+  const Fabric first = knitted("g", "periodic", "");
+  KnittingHistory history = history_of(first, 1, 0);
+  history.hand_pull_N_m = -1;
+  EXPECT_THROW(relax_as_knitted(first, with_friction(0.25), history), std::invalid_argument);
 }
 
 TEST(AsKnitted, PlatesKeepARibFlat) {

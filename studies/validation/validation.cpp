@@ -269,10 +269,14 @@ void print_acrylic() {
       "the\n"
       "second after one to 0.2 N/mm, counted from where it begins (how far that is from rest)\n");
   std::printf(
-      "  fabric  along   friction  across  measured   first      off   second      off   begins at\n");
+      "  fabric  along   friction  set  across  measured   first      off   second      off   begins at\n");
+  struct Yarn {
+    double friction, set;  // set: where it came to rest
+  };
   for (const Acrylic& a : acrylics)
-    for (const double friction : {0.0, 0.25}) {
-      const RelaxOptions options = acrylic_yarn(a, friction);
+    for (const Yarn yarn : {Yarn{0, 0}, Yarn{0.25, 0}, Yarn{0.25, 0.5}, Yarn{0.25, 0.8}}) {
+      RelaxOptions options = acrylic_yarn(a, yarn.friction);
+      options.set = yarn.set;
       const RelaxResult rest = rested(cell_of(a.courses, a.loop, a.diameter, 24), options);
       for (const bool course : {true, false})
         for (const bool held : {false, true}) {
@@ -280,8 +284,8 @@ void print_acrylic() {
           const double measured = course ? a.course_strain : a.wale_strain, first = cloth.bear(100);
           cloth.bear(200);
           const double begin = cloth.bear(0), second = (1 + cloth.bear(100)) / (1 + begin) - 1;
-          std::printf("  %-7s %-7s  %5.2f     %s    %6.3f   %6.3f  %+6.1f %%   %6.3f  %+6.1f %%   %+.3f%s\n",
-                      a.name, course ? "courses" : "wales", friction, held ? "held" : "free", measured, first,
+          std::printf("  %-7s %-7s  %5.2f  %5.2f   %s    %6.3f   %6.3f  %+6.1f %%   %6.3f  %+6.1f %%   %+.3f%s\n",
+                      a.name, course ? "courses" : "wales", yarn.friction, yarn.set, held ? "held" : "free", measured, first,
                       100 * (first / measured - 1), second, 100 * (second / measured - 1), begin,
                       cloth.unsettled() > 0 ? "  some points not at rest" : "");
           std::fflush(stdout);

@@ -45,6 +45,7 @@ inline RelaxResult rested(const Fabric& start, RelaxOptions options) {
   RelaxOptions grow = options;
   grow.model.free = {false, false, false};
   grow.tolerance = 0.05;
+  grow.set = 0;  // yarn is set where it comes to rest
   options.grow_in = false;
   return relax(relax(start, grow).fabric, options);
 }

@@ -5,12 +5,14 @@
 #include <limits>
 
 #include "base/stop.hpp"
+#include "geometry/hairpins.hpp"
 #include "geometry/held_events.hpp"
 
 namespace loopwright {
 namespace {
 
-constexpr double float_gap = 2.2;  // between a float and what it passes, in r
+constexpr double float_gap = 2.2;        // between a float and what it passes, in r
+constexpr double hairpin_radius = 0.75;  // in diameters
 
 // Where a float passes held loops: a place, and the turn of the cloth there.
 struct Pass {
@@ -87,6 +89,8 @@ class SinkerPlacer {
     std::vector<Vec3> way{whole.begin};
     pass_by(way, yarn, gap, yarn_float.passed, whole);
     way.push_back(whole.end);
+    open_hairpins(way, piece_.loops[from.position()].points.back().position,
+                  piece_.loops[to.position()].points.front().position, hairpin_radius * 2 * r_);
     place_along(sinker, from, way);
     return sinker;
   }

@@ -101,6 +101,21 @@ TEST(BoundOffSwatch, RelaxesFreeWithEveryInterlacing) {
     EXPECT_EQ(relaxed.fabric.interlacings[static_cast<std::size_t>(broken)].child, last_loop);
 }
 
+// What docs/mechanics.md shows. Its bind-off begins at the edge where the last course ended: drawn with a
+// cusp there the yarn stayed folded, which passed for a jam.
+TEST(SwatchExample, ComesToRest) {
+  const std::filesystem::path file = std::filesystem::path(LOOPWRIGHT_SOURCE_DIR) / "examples" / "swatch.k";
+  Diagnostics diagnostics(file.string());
+  const Knitting knitting = knit(file, {}, diagnostics);
+  const Fabric first = first_geometry(knitting, {});
+  const RelaxResult relaxed = relax(first, relax_options(first, knitting.program, {}));
+  EXPECT_TRUE(relaxed.converged) << relaxed.message;
+  EXPECT_EQ(relaxed.pass_throughs, 0);
+  const Assessment after = assess(relaxed.fabric);
+  EXPECT_EQ(after.interlacings.intact, 130);
+  EXPECT_NEAR(after.measured.loop_length_mm, 5.9, 0.03) << "neither squeezed nor stretched";
+}
+
 // Without friction a moss cell has rest states folded into itself; growing in must not lead there.
 TEST(PeriodicMoss, FindsTheFlatRestState) {
   const std::filesystem::path file =

@@ -19,15 +19,16 @@ struct Start {
   RelaxOptions options;
 };
 
-Start start_of(const std::string& structure, int n) {
+Start start_of(const std::string& structure, int n, double set = 0) {
   const std::filesystem::path file =
       std::filesystem::path(LOOPWRIGHT_SOURCE_DIR) / "examples/structures" / (structure + ".verm");
   Diagnostics diagnostics(file);
   FabricOptions size;
   size.size_wales = size.size_courses = n;
   size.edges = Edges::held;
-  const Knitting knitting = knit_with(file, size, diagnostics);
+  Knitting knitting = knit_with(file, size, diagnostics);
   EXPECT_TRUE(diagnostics.ok());
+  knitting.program.settings.set = set;
   const PieceRequest request{.start_from_cell = true};
   Start start{first_geometry(knitting, request), {}};
   start.options = relax_options(start.fabric, knitting.program, request);
@@ -71,6 +72,22 @@ TEST_P(HeldPiece, IsAtRestBeforeTheFirstStep) {
   EXPECT_LT(carried, 2 * start.options.tolerance);
   EXPECT_GT(dropped, 20 * carried) << "without its history friction holds nothing";
   EXPECT_LT(held_share(start.fabric), 0.55) << "a frame that holds everything is no frame";
+}
+
+// The yarn of its cell was set where that came to rest, and so is the piece's: at rest with less bend energy.
+TEST_P(HeldPiece, OfSetYarnIsAtRestToo) {
+  const Start set = start_of(GetParam(), 10, 0.5), straight = start_of(GetParam(), 10);
+  for (const FabricYarn& yarn : set.fabric.yarns)
+    EXPECT_EQ(yarn.natural_curvature.size(), static_cast<std::size_t>(yarn.segments()));
+  EXPECT_LT(largest_force(set, true), 2 * set.options.tolerance);
+  const auto bend = [](const Start& start) {
+    const YarnModel model = build_yarn_model(start.fabric, start.options.model);
+    const YarnState state = build_yarn_state(start.fabric);
+    Assembly assembly(model);
+    assembly.update_pairs(state, model.contact.outer + 0.6);
+    return assembly.energy(state).bend;
+  };
+  EXPECT_LT(bend(set), 0.4 * bend(straight));
 }
 
 TEST_P(HeldPiece, RestsInFewStepsWithAllInterlacings) {

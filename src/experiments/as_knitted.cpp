@@ -49,13 +49,6 @@ void check_history(const Fabric& first, const RelaxOptions& options, const Knitt
           "data");
 }
 
-void add_counts(RelaxResult& to, const RelaxResult& from) {
-  to.newton_iterations += from.newton_iterations;
-  to.linear_iterations += from.linear_iterations;
-  to.factorisations += from.factorisations;
-  to.pass_throughs += from.pass_throughs;
-}
-
 // From where it is under another load; counts are those of the whole way.
 RelaxResult goes_on(const RelaxResult& from, RelaxOptions options, const Measures& load) {
   options.model.load = load;

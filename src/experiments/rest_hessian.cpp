@@ -30,10 +30,7 @@ RelaxResult sharp_rest(const RelaxResult& relaxed, const RelaxOptions& options, 
   RelaxResult result = relaxed;
   const auto go_on = [&] {
     RelaxResult next = relax(result.fabric, sharp);
-    next.newton_iterations += result.newton_iterations;
-    next.linear_iterations += result.linear_iterations;
-    next.factorisations += result.factorisations;
-    next.pass_throughs += result.pass_throughs;
+    add_counts(next, result);
     result = std::move(next);
   };
   go_on();

@@ -148,6 +148,13 @@ RelaxResult relax_as_it_is(const Fabric& fabric, const RelaxOptions& options) {
 
 }  // namespace
 
+void add_counts(RelaxResult& to, const RelaxResult& from) {
+  to.newton_iterations += from.newton_iterations;
+  to.linear_iterations += from.linear_iterations;
+  to.factorisations += from.factorisations;
+  to.pass_throughs += from.pass_throughs;
+}
+
 Fabric set_yarn(Fabric fabric, double share) {
   if (!(share >= 0 && share <= 1)) throw std::invalid_argument("the set of yarn must lie between 0 and 1");
   for (FabricYarn& yarn : fabric.yarns) {
@@ -183,10 +190,7 @@ RelaxResult relax(const Fabric& fabric, const RelaxOptions& options) {
   again.model.plates = first.plates;
   again.most_iterations = std::max(1, options.most_iterations - first.newton_iterations);
   RelaxResult result = relax_as_it_is(set_yarn(std::move(first.fabric), options.set), again);
-  result.newton_iterations += first.newton_iterations;
-  result.linear_iterations += first.linear_iterations;
-  result.factorisations += first.factorisations;
-  result.pass_throughs += first.pass_throughs;
+  add_counts(result, first);
   return result;
 }
 

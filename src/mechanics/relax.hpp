@@ -50,6 +50,9 @@ struct RelaxResult {
   std::string message;    // why it ended, in words
 };
 
+// Steps, iterations, factors and uncertified steps of a run that `to` went on from.
+void add_counts(RelaxResult& to, const RelaxResult& from);
+
 // The fabric with its yarn set in the shape that it has: `share` of the curvature of its centrelines becomes
 // their natural curvature; 0: straight. Throws std::invalid_argument for a share outside 0 to 1.
 Fabric set_yarn(Fabric fabric, double share);

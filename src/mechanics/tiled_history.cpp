@@ -68,16 +68,9 @@ ContactHistory tiled_history(const Fabric& cell, const ContactHistory& history, 
 void hold_cut_contacts(const Fabric& cell, const ModelOptions& options, StartFromCell& start) {
   if (start.images.empty()) return;
   const YarnModel model = build_yarn_model(cell, options);
-  const YarnState state = build_yarn_state(cell);
-  std::vector<Vec3> extended;
   SamplePlaces places;
-  std::vector<SegmentPair> pairs;
-  expand(model, state, extended);
-  place_samples(model, extended, places);
-  double thickest = 0;
-  for (const FabricYarn& yarn : cell.yarns) thickest = std::max(thickest, yarn.diameter);
-  find_segment_pairs(model, state, places, model.contact.outer * thickest, pairs);
-
+  const std::vector<SegmentPair> pairs =
+      pairs_within(model, build_yarn_state(cell), model.contact.outer, places);
   const Copies copies(cell, start);
   std::vector<std::uint8_t> cut;  // [segment of the piece]
   for (const auto& yarn : start.images) cut.resize(cut.size() + yarn.size(), 0);

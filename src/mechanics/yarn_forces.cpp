@@ -22,14 +22,8 @@ std::vector<double> tensions(const Fabric& fabric, const YarnModel& model) {
 
 // Contact forces on all samples, B/d^2.
 std::vector<Vec3> sample_forces(const YarnModel& model, const YarnState& state) {
-  std::vector<Vec3> extended;
   SamplePlaces places;
-  expand(model, state, extended);
-  place_samples(model, extended, places);
-  double thickest = 0;
-  for (const YarnModel::Yarn& yarn : model.yarns) thickest = std::max(thickest, yarn.diameter);
-  std::vector<SegmentPair> pairs;
-  find_segment_pairs(model, state, places, model.contact.outer * thickest, pairs);
+  const std::vector<SegmentPair> pairs = pairs_within(model, state, model.contact.outer, places);
 
   const auto count = static_cast<std::size_t>(model.samples);
   std::vector<Vec3> forces(static_cast<std::size_t>(model.segments) * count);

@@ -69,7 +69,6 @@ YarnModel build_yarn_model(const Fabric& fabric, const ModelOptions& options) {
   model.contact = options.material.contact;
   model.friction = options.material.friction;
   double longest_segment = 0;
-  bool is_set = false;
   for (const FabricYarn& yarn : fabric.yarns) {
     check_yarn(fabric, yarn);
     const double area = yarn.diameter * yarn.diameter;
@@ -101,10 +100,11 @@ YarnModel build_yarn_model(const Fabric& fabric, const ModelOptions& options) {
       model.yarn_of_segment.push_back(static_cast<std::int32_t>(model.yarns.size()));
       model.natural_length.push_back(y.rest_length);
     }
-    is_set = is_set || !yarn.natural_curvature.empty();
-    model.natural_curvature.resize(static_cast<std::size_t>(y.first_segment));
-    model.natural_curvature.insert(model.natural_curvature.end(), yarn.natural_curvature.begin(),
-                                   yarn.natural_curvature.end());
+    if (!yarn.natural_curvature.empty()) {
+      model.natural_curvature.resize(static_cast<std::size_t>(y.first_segment));  // straight ones before it
+      model.natural_curvature.insert(model.natural_curvature.end(), yarn.natural_curvature.begin(),
+                                     yarn.natural_curvature.end());
+    }
     for (int i = 0; i < y.nodes; ++i)
       model.held.push_back(i < static_cast<int>(yarn.held.size()) ? yarn.held[static_cast<std::size_t>(i)]
                                                                   : std::uint8_t{0});
@@ -113,10 +113,8 @@ YarnModel build_yarn_model(const Fabric& fabric, const ModelOptions& options) {
     model.extended += y.nodes + ghosts;
     model.yarns.push_back(y);
   }
-  if (is_set)
+  if (!model.natural_curvature.empty())
     model.natural_curvature.resize(static_cast<std::size_t>(model.segments));
-  else
-    model.natural_curvature = {};
   model.samples = std::max(2, static_cast<int>(std::ceil(longest_segment / options.sample_spacing - 1e-9)));
   require(model.samples <= most_contact_samples,
           "segments of " + std::to_string(longest_segment) + " d are too long for contact samples every " +

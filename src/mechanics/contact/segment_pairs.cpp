@@ -240,4 +240,16 @@ void find_segment_pairs(const YarnModel& model, const YarnState& state, const Sa
   if (pairs.capacity() > pairs.size() + pairs.size() / 4) pairs.shrink_to_fit();
 }
 
+std::vector<SegmentPair> pairs_within(const YarnModel& model, const YarnState& state, double reach,
+                                      SamplePlaces& places) {
+  std::vector<Vec3> extended;
+  expand(model, state, extended);
+  place_samples(model, extended, places);
+  double thickest = 0;
+  for (const YarnModel::Yarn& yarn : model.yarns) thickest = std::max(thickest, yarn.diameter);
+  std::vector<SegmentPair> pairs;
+  find_segment_pairs(model, state, places, reach * thickest, pairs);
+  return pairs;
+}
+
 }  // namespace loopwright

@@ -30,5 +30,8 @@ void place_samples(const YarnModel& model, const std::vector<Vec3>& extended, Sa
 // reach the piece.
 void find_segment_pairs(const YarnModel& model, const YarnState& state, const SamplePlaces& places,
                         double range, std::vector<SegmentPair>& pairs);
+// The same from the state alone: pairs nearer than `reach` diameters of the thickest yarn. `places` are made.
+std::vector<SegmentPair> pairs_within(const YarnModel& model, const YarnState& state, double reach,
+                                      SamplePlaces& places);
 
 }  // namespace loopwright

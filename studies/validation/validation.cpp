@@ -288,6 +288,11 @@ void print_pulls(const Acrylic& a, Yarn yarn) {
       a.diameter * rest.fabric.height / rest.fabric.courses, 100 * (k.loop_length * a.diameter / a.loop - 1),
       rest.converged ? "" : ", NOT AT REST");
   if (!rest.converged) return;
+  const auto known = [](double measured) {
+    char text[16] = "     -";
+    if (std::isfinite(measured)) std::snprintf(text, sizeof text, "%6.3f", measured);
+    return std::string(text);
+  };
   const auto off = [](double strain, double measured) {
     char text[16] = "         ";
     if (std::isfinite(measured)) std::snprintf(text, sizeof text, "%+6.1f %%", 100 * (strain / measured - 1));
@@ -299,24 +304,26 @@ void print_pulls(const Acrylic& a, Yarn yarn) {
       const double measured = course ? a.course_strain : a.wale_strain, first = cloth.bear(100);
       cloth.bear(200);
       const double begin = cloth.bear(0), second = (1 + cloth.bear(100)) / (1 + begin) - 1;
-      std::printf("    %-7s %s   %6.3f   %6.3f  %s   %6.3f  %s   %+.3f%s\n", course ? "courses" : "wales",
-                  held ? "held" : "free", measured, first, off(first, measured).c_str(), second,
-                  off(second, measured).c_str(), begin,
+      std::printf("    %-7s %s   %s   %6.3f  %s   %6.3f  %s   %+.3f%s\n", course ? "courses" : "wales",
+                  held ? "held" : "free", known(measured).c_str(), first, off(first, measured).c_str(),
+                  second, off(second, measured).c_str(), begin,
                   cloth.unsettled() > 0 ? "  some points not at rest" : "");
       std::fflush(stdout);
     }
 }
 
-void print_acrylic_heading() {
+void print_acrylic_heading(const char* yarn) {
   std::printf(
-      "acrylic fabrics: strain at 0.1 N/mm (100 N/m), measured and here: in the first pull from rest, and in "
+      "acrylic fabrics%s: strain at 0.1 N/mm (100 N/m), measured and here: in the first pull from rest, and "
+      "in "
       "the\n"
-      "second after one to 0.2 N/mm, counted from where it begins (how far that is from rest)\n");
+      "second after one to 0.2 N/mm, counted from where it begins (how far that is from rest)\n",
+      yarn);
   std::printf("    along   across  measured  first      off   second      off   begins at\n");
 }
 
 void print_acrylic() {
-  print_acrylic_heading();
+  print_acrylic_heading("");
   for (const Acrylic& a : acrylics)
     for (const Yarn yarn : {Yarn{0, 0}, Yarn{0.25, 0}, Yarn{0.25, 0.5}, Yarn{0.25, 0.8}})
       print_pulls(a, yarn);
@@ -324,7 +331,7 @@ void print_acrylic() {
 }
 
 void print_acrylic_77_tex() {
-  print_acrylic_heading();
+  print_acrylic_heading(", 77 tex");
   for (const Acrylic& a : acrylics_77_tex)
     for (const Yarn yarn : {Yarn{0.25, 0}, Yarn{0.25, 0.5}}) print_pulls(a, yarn);
   std::printf("\n");

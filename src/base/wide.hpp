@@ -12,6 +12,8 @@
 
 #if defined(__GNUC__)
 #define LOOPWRIGHT_INLINE inline __attribute__((always_inline))
+#define LOOPWRIGHT_INLINE_LAMBDA __attribute__((always_inline))
 #else
 #define LOOPWRIGHT_INLINE inline
+#define LOOPWRIGHT_INLINE_LAMBDA
 #endif

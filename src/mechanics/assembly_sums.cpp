@@ -210,7 +210,7 @@ void Assembly::add_contacts(Chunk& chunk) {
       continue;
     const ContactLaw law = scale == 1 ? model_.contact : model_.contact.scaled(scale);
     if (!chunk.matrix) {
-      chunk.energy.contact += contact_energy(in, law);
+      chunk.energy.contact += folded_energy(in, law);
       continue;
     }
     fold_contact(in, law, model_.weights, products_, fold);

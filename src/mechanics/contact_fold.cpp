@@ -63,4 +63,8 @@ LOOPWRIGHT_WIDE void fold_contact(const ContactPairInput& in, const ContactLaw& 
   fold.between = out.between;
 }
 
+LOOPWRIGHT_WIDE double folded_energy(const ContactPairInput& in, const ContactLaw& law) {
+  return contact_energy(in, law);
+}
+
 }  // namespace loopwright

@@ -26,4 +26,7 @@ struct ContactFold {
 void fold_contact(const ContactPairInput& in, const ContactLaw& law, const SampleWeights& weights,
                   const WeightProducts& products, ContactFold& fold);
 
+// contact_energy(), compiled for this processor.
+double folded_energy(const ContactPairInput& in, const ContactLaw& law);
+
 }  // namespace loopwright

@@ -7,25 +7,16 @@
 // Nine coordinates instead of twelve (where the segment lies does not count), most of whose weights are 0 or
 // 1.
 //
-// Real: double for one segment, Lanes for several at once, each in a lane of its own. Lanes go by reference,
-// never by value: how they are passed by value depends on the processor that is compiled for.
+// Real: double for one segment, Lanes for several at once.
 #pragma once
 #include <array>
-#include <cmath>
 #include <cstddef>
 
 #include "base/wide.hpp"
 #include "mechanics/energies/energy.hpp"
+#include "mechanics/energies/lanes.hpp"
 
 namespace loopwright {
-
-using Lanes = double __attribute__((vector_size(32)));
-inline constexpr std::size_t lanes = sizeof(Lanes) / sizeof(double);
-
-inline void square_root(const double& x, double& root) { root = std::sqrt(x); }
-LOOPWRIGHT_INLINE void square_root(const Lanes& x, Lanes& root) {
-  for (std::size_t l = 0; l < lanes; ++l) root[l] = std::sqrt(x[l]);
-}
 
 // v, a, j; x, y, z of each.
 template <class Real>

@@ -12,15 +12,7 @@
 #include <tuple>
 
 #include "base/parallel.hpp"
-
-// Compiled twice, the second time for processors with four doubles in a vector; which one runs is chosen when
-// the program starts. No fused products, so that both give the same numbers.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
-    !defined(__SANITIZE_THREAD__)
-#define LOOPWRIGHT_WIDE __attribute__((target_clones("avx2", "default")))
-#else
-#define LOOPWRIGHT_WIDE
-#endif
+#include "base/wide.hpp"
 
 namespace loopwright {
 namespace {

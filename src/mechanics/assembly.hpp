@@ -8,12 +8,16 @@
 #include <vector>
 
 #include "mechanics/contact/segment_pairs.hpp"
+#include "mechanics/contact_fold.hpp"
 #include "mechanics/contact_history.hpp"
 #include "mechanics/energies/friction.hpp"
-#include "mechanics/linear/block_matrix.hpp"
+#include "mechanics/linear/upper_blocks.hpp"
 #include "mechanics/yarn_model.hpp"
 
 namespace loopwright {
+
+struct SegmentLanes;
+struct SegmentLanesTerm;
 
 struct EnergyParts {
   double stretch = 0, bend = 0, contact = 0, plates = 0;
@@ -71,19 +75,33 @@ class Assembly {
     std::int8_t m = 0, n = 0;
     Friction law;
   };
+  struct Chunk;
   EnergyParts terms(const YarnState& state, Unknowns* gradient, BlockMatrix* hessian);
+  FourNodes nodes_of(int segment) const;
+  bool touches(const Chunk& chunk, int segment) const;
+  void gather(const std::int32_t* segments, std::size_t count, bool fractions, SegmentLanes& to) const;
+  void add_segments(Chunk& chunk) const;
+  void add_plates(int segment, Chunk& chunk) const;
+  bool contact_input(const SegmentPair& pair, const Vec3& image, double reach, ContactPairInput& in) const;
+  void add_contacts(Chunk& chunk);
+  FrictionContact add_friction(const SegmentPair& pair, const YarnState& state, ContactFold& fold) const;
+  void scatter(const SegmentLanesTerm& term, std::size_t lane, int segment, Chunk& chunk) const;
+  void scatter(const ContactFold& fold, const SegmentPair& pair, Chunk& chunk) const;
   Vec3 remembered_slip(const SegmentPair& pair) const;
   Vec3 relative_place(const FrictionContact& contact, const YarnState& state) const;
   void prepare(const YarnState& state);
-  void build_pattern(BlockMatrix& hessian) const;
+  void build_pattern(BlockMatrix& hessian);
+  void listed_pattern(BlockMatrix& hessian) const;
   bool in_contact(const SegmentPair& pair) const;
   double law_scale(int segment_a, int segment_b) const;
 
   const YarnModel& model_;
+  WeightProducts products_;
   std::vector<SegmentPair> pairs_;
   std::vector<std::int32_t> active_;       // pairs in contact in the last Hessian's state
   std::vector<FrictionContact> friction_;  // one for each of these, if there is friction
   ContactHistory remembered_;              // of the last accepted step
+  std::vector<std::int32_t> diagonal_;     // places of the last Hessian's diagonal blocks
   std::vector<Vec3> extended_;
   SamplePlaces places_;
   std::vector<std::array<double, 2>> fraction_;  // [extended]

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "mechanics/energies/bend.hpp"
+#include "mechanics/energies/segment_term.hpp"
 #include "mechanics/grow_in.hpp"
 #include "mechanics/newton.hpp"
 
@@ -114,10 +114,10 @@ Fabric set_yarn(Fabric fabric, double share) {
         const Vec3 q = control_point(fabric, yarn, e + k);
         for (int c = 0; c < 3; ++c) x[static_cast<std::size_t>(3 * k + c)] = q[c];
       }
+      const GaussPoints<double> p = gauss_points(x);
       std::array<double, 4>& curvature = yarn.natural_curvature.emplace_back();
       for (std::size_t g = 0; g < 4; ++g) {
-        const Bend::Point p = Bend{}.point(x, g);
-        const double squared = p.D / (p.A * p.A) - p.C * p.C / (p.A * p.A * p.A);
+        const double squared = p.D[g] / (p.A[g] * p.A[g]) - p.C[g] * p.C[g] / (p.A[g] * p.A[g] * p.A[g]);
         curvature[g] = share * std::sqrt(std::max(squared, 0.0));
       }
     }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <limits>
 
 #include "base/parallel.hpp"
@@ -119,6 +121,55 @@ std::vector<SegmentMotion> segment_motions(const SamplePlaces& from, const Sampl
   return all;
 }
 
+// So far apart, and moving so little against each other, that two sticks would not change the verdict: they
+// are nearer than their centres by no more than both halves, and move no more than these and both turns.
+// ratio: of motion to room, of the worst so far.
+struct StickBound {
+  double halves = 0, turns = 0, ratio = 0;
+
+  bool harmless(double distance2, double motion2) const {
+    return distance2 > 9 * halves * halves &&
+           std::sqrt(motion2) + turns <= ratio * (std::sqrt(distance2) - halves - bent_away);
+  }
+};
+
+// Those of another segment's samples that are not harmless to one at `place`, which goes to `moved`: their
+// numbers go to `found` (room for four more than there are samples), how many is returned.
+LOOPWRIGHT_WIDE std::size_t suspects(const StickBound& bound, const Vec3& place, const Vec3& moved,
+                                     const SampleView& from, const SampleView& to, std::size_t count,
+                                     std::uint8_t* found) {
+  const double least2 = 9 * bound.halves * bound.halves, nearer = bound.halves + bent_away;
+  std::size_t n = 0, j = 0;
+  const auto take = [](const double* p, Lanes& v) LOOPWRIGHT_INLINE_LAMBDA { std::memcpy(&v, p, sizeof v); };
+  for (; j + lanes <= count; j += lanes) {
+    Lanes x, y, z, tx, ty, tz;
+    take(from.x + j, x);
+    take(from.y + j, y);
+    take(from.z + j, z);
+    take(to.x + j, tx);
+    take(to.y + j, ty);
+    take(to.z + j, tz);
+    const Lanes dx = place.x - x, dy = place.y - y, dz = place.z - z;
+    const Lanes rx = (moved.x - tx) - dx, ry = (moved.y - ty) - dy, rz = (moved.z - tz) - dz;
+    const Lanes distance2 = dx * dx + dy * dy + dz * dz, motion2 = rx * rx + ry * ry + rz * rz;
+    Lanes distance, motion;
+    square_root(distance2, distance);
+    square_root(motion2, motion);
+    const Lanes left = bound.ratio * (distance - nearer) - (motion + bound.turns);
+    const auto safe = (distance2 > least2) & (left >= 0.0);
+    for (std::size_t l = 0; l < lanes; ++l) {
+      found[n] = static_cast<std::uint8_t>(j + l);
+      n += safe[l] == 0 ? 1 : 0;
+    }
+  }
+  for (; j < count; ++j) {
+    const Vec3 d = place - Vec3{from.x[j], from.y[j], from.z[j]};
+    found[n] = static_cast<std::uint8_t>(j);
+    if (!bound.harmless(squared_norm(d), squared_norm(moved - Vec3{to.x[j], to.y[j], to.z[j]} - d))) ++n;
+  }
+  return n;
+}
+
 // Distance of two sticks with centres apart by d: points d + s a - t b, s and t in [-1, 1]. Alternating
 // closest points find the minimum of this convex function; a few rounds give it well within a hundredth.
 double stick_distance2(const Vec3& d, const Vec3& a, const Vec3& b) {
@@ -170,31 +221,25 @@ SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnS
                           &other_motion = motions[static_cast<std::size_t>(pair.b)];
       const SampleBox& other_box = from.boxes[static_cast<std::size_t>(pair.b)];
       const double halves = one_motion.half + other_motion.half, turns = one_motion.turn + other_motion.turn;
-      // So far apart, and moving so little against each other, that sticks would not change the verdict.
-      const auto harmless = [&](double distance2, double motion2) {
-        return distance2 > 9 * halves * halves &&
-               2 * (motion2 + turns * turns) <= 0.44 * w.ratio2 * distance2;
-      };
-      if (harmless(pair.distance2, most_motion2)) return;
-      const SampleView others{&from.x[j0], &from.y[j0], &from.z[j0]};
-      std::array<double, most_contact_samples> d2, r2;
+      const auto bound = [&] { return StickBound{halves, turns, std::sqrt(w.ratio2)}; };
+      StickBound known = bound();
+      if (known.harmless(pair.distance2, most_motion2)) return;
+      const SampleView others{&from.x[j0], &from.y[j0], &from.z[j0]},
+          moved_others{&to.x[j0], &to.y[j0], &to.z[j0]};
+      std::array<std::uint8_t, most_contact_samples + lanes> suspect;
       bool has_other_sticks = false;
       for (std::size_t i = 0; i < count; ++i) {
-        const double x = from.x[i0 + i] - image.x, y = from.y[i0 + i] - image.y, z = from.z[i0 + i] - image.z;
-        const double sx = to.x[i0 + i] - from.x[i0 + i] - moved_image.x,
-                     sy = to.y[i0 + i] - from.y[i0 + i] - moved_image.y,
-                     sz = to.z[i0 + i] - from.z[i0 + i] - moved_image.z;
-        const double sample_motion = norm(Vec3{sx, sy, sz} - other_motion.mean) + other_motion.spread;
-        if (harmless(squared_distance(x, y, z, other_box), sample_motion * sample_motion)) continue;
-        squared_distances(x, y, z, others, count, 0, d2.data());
-        for (std::size_t j = 0; j < count; ++j) {
-          const double rx = sx - (to.x[j0 + j] - from.x[j0 + j]), ry = sy - (to.y[j0 + j] - from.y[j0 + j]),
-                       rz = sz - (to.z[j0 + j] - from.z[j0 + j]);
-          r2[j] = rx * rx + ry * ry + rz * rz;
-        }
+        const Vec3 place = Vec3{from.x[i0 + i], from.y[i0 + i], from.z[i0 + i]} - image,
+                   moved = Vec3{to.x[i0 + i], to.y[i0 + i], to.z[i0 + i]} - image - moved_image;
+        const double sample_motion = norm(moved - place - other_motion.mean) + other_motion.spread;
+        if (known.harmless(squared_distance(place.x, place.y, place.z, other_box),
+                           sample_motion * sample_motion))
+          continue;
+        const std::size_t found = suspects(known, place, moved, others, moved_others, count, suspect.data());
+        if (found == 0) continue;
         const Stick one = stick_of(from, to, i0 + i, count);
-        for (std::size_t j = 0; j < count; ++j) {
-          if (harmless(d2[j], r2[j])) continue;
+        for (std::size_t f = 0; f < found; ++f) {
+          const std::size_t j = suspect[f];
           if (pair.same_yarn && std::abs(pair.arc_offset + (static_cast<double>(j) - static_cast<double>(i)) *
                                                                spacing) < model.excluded * yarn.diameter)
             continue;
@@ -202,9 +247,10 @@ SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnS
             for (std::size_t l = 0; l < count; ++l) other_sticks[l] = stick_of(from, to, j0 + l, count);
           has_other_sticks = true;
           const Stick& other = other_sticks[j];
-          const double motion = std::sqrt(r2[j]) + norm(one.turn) + norm(other.turn);
-          const double gap2 =
-              stick_distance2({x - others.x[j], y - others.y[j], z - others.z[j]}, one.half, other.half);
+          const Vec3 apart = place - Vec3{others.x[j], others.y[j], others.z[j]},
+                     apart_then = moved - Vec3{moved_others.x[j], moved_others.y[j], moved_others.z[j]};
+          const double motion = norm(apart_then - apart) + norm(one.turn) + norm(other.turn);
+          const double gap2 = stick_distance2(apart, one.half, other.half);
           w.gap2 = std::min(w.gap2, gap2);
           // Yarn bends away from its sticks: see `bent_away`. Below twice that half the gap is left for it.
           const double gap = std::sqrt(gap2), room = std::max(std::max(gap - bent_away, 0.5 * gap), 1e-9);
@@ -213,6 +259,7 @@ SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnS
             w.ratio2 = motion * motion / room2;
             w.a = pair.a;
             w.b = pair.b;
+            known = bound();
           }
         }
       }

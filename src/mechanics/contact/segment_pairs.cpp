@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <tuple>
 
 namespace loopwright {
@@ -28,48 +29,116 @@ SampleBox box_of(const SamplePlaces& places, std::size_t begin, std::size_t end)
 }
 
 bool apart(const SampleBox& a, const SampleBox& b, double range) {
-  for (std::size_t c = 0; c < 3; ++c)
-    if (a.low[c] - b.high[c] > range || b.low[c] - a.high[c] > range) return true;
-  return false;
+  return squared_distance(a, {0, 0, 0}, b) >= range * range;
 }
 
-// Squared distance of those samples of two segments that can touch; `beyond2` where none is less.
-double smallest_distance2(const YarnModel& model, const SamplePlaces& p, const SegmentPair& pair,
-                          const Vec3& image, double beyond2) {
+// Samples of two segments, the second one's at a lattice image; samples of one yarn closer than `excluded`
+// along it (0: none) are passed over, as in ContactPairInput.
+struct SamplePair {
+  SampleView a, b;
+  std::array<double, 3> image{};
+  std::size_t count = 0;
+  double arc_offset = 0, spacing = 0, excluded = 0;
+};
+
+template <bool with_excluded>
+LOOPWRIGHT_INLINE double least_squared_distance(const SamplePair& p, double beyond2) {
+  const double far = beyond2;
+  Lanes least = Lanes{} + beyond2;
+  std::size_t j = 0;
+  for (; j + lanes <= p.count; j += lanes) {
+    Lanes x, y, z;
+    std::memcpy(&x, p.b.x + j, sizeof x);
+    std::memcpy(&y, p.b.y + j, sizeof y);
+    std::memcpy(&z, p.b.z + j, sizeof z);
+    x += p.image[0];
+    y += p.image[1];
+    z += p.image[2];
+    const Lanes at = Lanes{0, 1, 2, 3} + static_cast<double>(j);
+    for (std::size_t i = 0; i < p.count; ++i) {
+      const Lanes dx = p.a.x[i] - x, dy = p.a.y[i] - y, dz = p.a.z[i] - z;
+      Lanes d2 = dx * dx + dy * dy + dz * dz;
+      if constexpr (with_excluded) {
+        const Lanes along = p.arc_offset + (at - static_cast<double>(i)) * p.spacing;
+        d2 = (along < 0.0 ? -along : along) < p.excluded ? Lanes{} + far : d2;
+      }
+      least = d2 < least ? d2 : least;
+    }
+  }
+  double nearest = std::min(std::min(least[0], least[1]), std::min(least[2], least[3]));
+  for (; j < p.count; ++j)
+    for (std::size_t i = 0; i < p.count; ++i) {
+      const double dx = p.a.x[i] - (p.b.x[j] + p.image[0]), dy = p.a.y[i] - (p.b.y[j] + p.image[1]),
+                   dz = p.a.z[i] - (p.b.z[j] + p.image[2]);
+      const double along = p.arc_offset + (static_cast<double>(j) - static_cast<double>(i)) * p.spacing;
+      if (!with_excluded || std::abs(along) >= p.excluded)
+        nearest = std::min(nearest, dx * dx + dy * dy + dz * dz);
+    }
+  return nearest;
+}
+
+// `beyond2` where no distance is less.
+LOOPWRIGHT_WIDE double smallest_distance2(const SamplePair& p, double beyond2) {
+  return p.excluded > 0 ? least_squared_distance<true>(p, beyond2)
+                        : least_squared_distance<false>(p, beyond2);
+}
+
+SamplePair sample_pair(const YarnModel& model, const SamplePlaces& p, const SegmentPair& pair,
+                       const Vec3& image) {
   const auto i0 = static_cast<std::size_t>(pair.a * model.samples),
              j0 = static_cast<std::size_t>(pair.b * model.samples);
-  const auto count = static_cast<std::size_t>(model.samples);
-  const SampleBox& box = p.boxes[static_cast<std::size_t>(pair.b)];
-  const SampleView others{&p.x[j0], &p.y[j0], &p.z[j0]};
-  std::array<double, most_contact_samples> to_box2{}, d2;
-  for (std::size_t i = 0; i < count; ++i)
-    to_box2[i] = squared_distance(p.x[i0 + i] - image.x, p.y[i0 + i] - image.y, p.z[i0 + i] - image.z, box);
-  const YarnModel::Yarn& yarn = model.yarn_of(pair.a);
-  const double spacing = yarn.rest_length / model.samples, excluded = model.excluded * yarn.diameter;
-  // Neighbours along one yarn: samples closer than this along it do not touch, and are always near.
-  const auto along_yarn = [&](std::size_t i, std::size_t j) {
-    return std::abs(pair.arc_offset + (static_cast<double>(j) - static_cast<double>(i)) * spacing) < excluded;
-  };
-  // The sample nearest to the box first: most others then need not be looked at.
-  const auto first = static_cast<std::size_t>(
-      std::min_element(to_box2.begin(), to_box2.begin() + static_cast<std::ptrdiff_t>(count)) -
-      to_box2.begin());
-  double nearest = beyond2;
-  const auto look_at = [&](std::size_t i) {
-    if (to_box2[i] >= nearest) return;
-    const double least = squared_distances(p.x[i0 + i] - image.x, p.y[i0 + i] - image.y,
-                                           p.z[i0 + i] - image.z, others, count, nearest, d2.data());
-    if (!pair.same_yarn) {
-      nearest = least;
-      return;
+  SamplePair samples{{&p.x[i0], &p.y[i0], &p.z[i0]},
+                     {&p.x[j0], &p.y[j0], &p.z[j0]},
+                     {image.x, image.y, image.z},
+                     static_cast<std::size_t>(model.samples)};
+  if (pair.same_yarn) {
+    const YarnModel::Yarn& yarn = model.yarn_of(pair.a);
+    samples.arc_offset = pair.arc_offset;
+    samples.spacing = yarn.rest_length / model.samples;
+    samples.excluded = model.excluded * yarn.diameter;
+  }
+  return samples;
+}
+
+// Boxes by coordinate, in the order of the grid's cells.
+struct SortedBoxes {
+  std::array<std::vector<double>, 3> low, high;
+  void resize(std::size_t count) {  // four at a time are read: the last ones lie beyond all range
+    for (std::size_t c = 0; c < 3; ++c) {
+      low[c].assign(count + lanes, 1e100);
+      high[c].assign(count + lanes, 1e100);
     }
-    for (std::size_t j = 0; j < count; ++j)
-      if (!along_yarn(i, j)) nearest = std::min(nearest, d2[j]);
-  };
-  look_at(first);
-  for (std::size_t i = 0; i < count; ++i)
-    if (i != first) look_at(i);
-  return nearest;
+  }
+  void set(std::size_t k, const SampleBox& box) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      low[c][k] = box.low[c];
+      high[c][k] = box.high[c];
+    }
+  }
+};
+
+// Which of the boxes [begin, end) are nearer to `box` than the root of range2: their numbers go to `found`
+// (room for end - begin + 3), how many is returned.
+LOOPWRIGHT_WIDE std::size_t near_boxes(const SampleBox& box, const SortedBoxes& boxes, std::size_t begin,
+                                       std::size_t end, double range2, std::int32_t* found) {
+  std::size_t count = 0;
+  for (std::size_t k = begin; k < end; k += lanes) {
+    Lanes d2{};
+    for (std::size_t c = 0; c < 3; ++c) {
+      Lanes low, high;
+      std::memcpy(&low, boxes.low[c].data() + k, sizeof low);
+      std::memcpy(&high, boxes.high[c].data() + k, sizeof high);
+      const Lanes before = low - box.high[c], after = box.low[c] - high;
+      Lanes gap = before > after ? before : after;
+      gap = gap > 0.0 ? gap : Lanes{};
+      d2 += gap * gap;
+    }
+    for (std::size_t l = 0; l < lanes; ++l) {
+      found[count] = static_cast<std::int32_t>(k + l);
+      count += d2[l] < range2 && k + l < end ? 1 : 0;
+    }
+  }
+  return count;
 }
 
 // Does image (m, n) of the yarn lie on the same endless yarn, and how many turns ahead?
@@ -80,6 +149,30 @@ bool turns_ahead(const YarnModel::Yarn& yarn, int m, int n, int& turns) {
   const auto [sm, sn] = yarn.shift;
   turns = sm != 0 ? m / sm : sn != 0 ? n / sn : 0;
   return turns != 0 && turns * sm == m && turns * sn == n;
+}
+
+// The pair of a segment and another at its image, but for its distance; false if they lie so close along one
+// yarn that they never touch.
+bool may_touch(const YarnModel& model, int a, const ImagedSegment& other, SegmentPair& pair) {
+  pair.a = a;
+  pair.b = other.segment;
+  pair.m = other.m;
+  pair.n = other.n;
+  const YarnModel::Yarn& yarn = model.yarn_of(a);
+  int turns = 0;
+  if (model.yarn_of_segment[static_cast<std::size_t>(a)] !=
+          model.yarn_of_segment[static_cast<std::size_t>(other.segment)] ||
+      !turns_ahead(yarn, other.m, other.n, turns))
+    return true;
+  int ahead = other.segment - a + turns * yarn.segments;
+  // a ring: its end lies behind its beginning
+  const bool closed = yarn.periodic && yarn.shift == std::array<int, 2>{0, 0};
+  if (closed && 2 * ahead > yarn.segments) ahead -= yarn.segments;
+  const double excluded = model.excluded * yarn.diameter;
+  if ((std::abs(ahead) + 1) * yarn.rest_length <= excluded) return false;
+  pair.same_yarn = (std::abs(ahead) - 1) * yarn.rest_length < excluded;
+  pair.arc_offset = ahead * yarn.rest_length;
+  return true;
 }
 
 std::vector<ImagedSegment> imaged_segments(const YarnModel& model, const YarnState& state,
@@ -197,45 +290,39 @@ void find_segment_pairs(const YarnModel& model, const YarnState& state, const Sa
   for (std::size_t s = 0; s < all.size(); ++s)
     sorted[static_cast<std::size_t>(fill[where[s]]++)] = static_cast<std::int32_t>(s);
 
+  SortedBoxes boxes;
+  boxes.resize(all.size());
+  for (std::size_t k = 0; k < sorted.size(); ++k) boxes.set(k, all[static_cast<std::size_t>(sorted[k])].box);
+
   const double range2 = range * range;
+  std::vector<std::int32_t> found(all.size() + lanes);
   for (int a = 0; a < model.segments; ++a) {
     const SampleBox& box = all[static_cast<std::size_t>(a)].box;
-    const YarnModel::Yarn& yarn = model.yarn_of(a);
+    const std::size_t first_pair = pairs.size();
     cell_of(box, at);
+    const int i0 = std::max(at[0] - 1, 0), i1 = std::min(at[0] + 1, size[0] - 1);
     for (int k = std::max(at[2] - 1, 0); k <= std::min(at[2] + 1, size[2] - 1); ++k)
-      for (int j = std::max(at[1] - 1, 0); j <= std::min(at[1] + 1, size[1] - 1); ++j)
-        for (int i = std::max(at[0] - 1, 0); i <= std::min(at[0] + 1, size[0] - 1); ++i) {
-          const std::size_t c = cell_index(i, j, k);
-          for (std::int32_t s = start[c]; s < start[c + 1]; ++s) {
-            const ImagedSegment& other = all[static_cast<std::size_t>(sorted[static_cast<std::size_t>(s)])];
-            if (other.m == 0 && other.n == 0 && other.segment <= a) continue;
-            if (apart(box, other.box, range)) continue;
-            SegmentPair pair;
-            pair.a = a;
-            pair.b = other.segment;
-            pair.m = other.m;
-            pair.n = other.n;
-            int turns = 0;
-            if (model.yarn_of_segment[static_cast<std::size_t>(a)] ==
-                    model.yarn_of_segment[static_cast<std::size_t>(other.segment)] &&
-                turns_ahead(yarn, other.m, other.n, turns)) {
-              int ahead = other.segment - a + turns * yarn.segments;
-              // a ring: its end lies behind its beginning
-              const bool closed = yarn.periodic && yarn.shift == std::array<int, 2>{0, 0};
-              if (closed && 2 * ahead > yarn.segments) ahead -= yarn.segments;
-              const double excluded = model.excluded * yarn.diameter;
-              if ((std::abs(ahead) + 1) * yarn.rest_length <= excluded) continue;
-              pair.same_yarn = (std::abs(ahead) - 1) * yarn.rest_length < excluded;
-              pair.arc_offset = ahead * yarn.rest_length;
-            }
-            pair.distance2 = smallest_distance2(model, places, pair, state.lattice(other.m, other.n), range2);
-            if (pair.distance2 < range2) pairs.push_back(pair);
-          }
+      for (int j = std::max(at[1] - 1, 0); j <= std::min(at[1] + 1, size[1] - 1); ++j) {
+        // Cells along x lie one behind the other.
+        const auto begin = static_cast<std::size_t>(start[cell_index(i0, j, k)]),
+                   end = static_cast<std::size_t>(start[cell_index(i1, j, k) + 1]);
+        const std::size_t count = near_boxes(box, boxes, begin, end, range2, found.data());
+        for (std::size_t f = 0; f < count; ++f) {
+          const ImagedSegment& other =
+              all[static_cast<std::size_t>(sorted[static_cast<std::size_t>(found[f])])];
+          if (other.m == 0 && other.n == 0 && other.segment <= a) continue;
+          SegmentPair pair;
+          if (!may_touch(model, a, other, pair)) continue;
+          pair.distance2 =
+              smallest_distance2(sample_pair(model, places, pair, state.lattice(pair.m, pair.n)), range2);
+          if (pair.distance2 < range2) pairs.push_back(pair);
         }
+      }
+    std::sort(pairs.begin() + static_cast<std::ptrdiff_t>(first_pair), pairs.end(),
+              [](const SegmentPair& p, const SegmentPair& q) {
+                return std::tie(p.b, p.m, p.n) < std::tie(q.b, q.m, q.n);
+              });
   }
-  std::sort(pairs.begin(), pairs.end(), [](const SegmentPair& p, const SegmentPair& q) {
-    return std::tie(p.a, p.b, p.m, p.n) < std::tie(q.a, q.b, q.m, q.n);
-  });
   // The list outlives the search: what a large piece's has grown too long by is given back.
   if (pairs.capacity() > pairs.size() + pairs.size() / 4) pairs.shrink_to_fit();
 }

@@ -14,7 +14,9 @@
 #include <cstring>
 #include <limits>
 
+#include "base/wide.hpp"
 #include "mechanics/energies/energy.hpp"
+#include "mechanics/energies/lanes.hpp"
 #include "mechanics/laws/contact_law.hpp"
 
 namespace loopwright {
@@ -38,7 +40,7 @@ struct SampleBox {
 };
 
 // Of a place from a box; 0 inside.
-inline double squared_distance(double x, double y, double z, const SampleBox& box) {
+LOOPWRIGHT_INLINE double squared_distance(double x, double y, double z, const SampleBox& box) {
   const double dx = std::max(std::max(box.low[0] - x, x - box.high[0]), 0.0),
                dy = std::max(std::max(box.low[1] - y, y - box.high[1]), 0.0),
                dz = std::max(std::max(box.low[2] - z, z - box.high[2]), 0.0);
@@ -46,7 +48,8 @@ inline double squared_distance(double x, double y, double z, const SampleBox& bo
 }
 
 // Of a box, moved by -image, from another; 0 where they overlap.
-inline double squared_distance(const SampleBox& a, const std::array<double, 3>& image, const SampleBox& b) {
+LOOPWRIGHT_INLINE double squared_distance(const SampleBox& a, const std::array<double, 3>& image,
+                                          const SampleBox& b) {
   double sum = 0;
   for (std::size_t c = 0; c < 3; ++c) {
     const double apart =
@@ -56,34 +59,37 @@ inline double squared_distance(const SampleBox& a, const std::array<double, 3>& 
   return sum;
 }
 
-// Of a place from n others, into d2; returns the least of them and `beyond2`. Two at a time, in four running
+// Of a place from n others, into d2; returns the least of them and `beyond2`. Four at a time, in two running
 // minima, so that none waits for the one before it.
-inline double squared_distances(double x, double y, double z, const SampleView& others, std::size_t n,
-                                double beyond2, double* d2) {
-  using Two = double __attribute__((vector_size(16)));
-  const auto two = [](const double* p) {
-    Two v;
-    std::memcpy(&v, p, sizeof v);
-    return v;
-  };
-  Two least_even{beyond2, beyond2}, least_odd = least_even;
-  const auto pair_of = [&](std::size_t j, Two& least) {
-    const Two dx = x - two(others.x + j), dy = y - two(others.y + j), dz = z - two(others.z + j);
-    const Two v = dx * dx + dy * dy + dz * dz;
+LOOPWRIGHT_INLINE double squared_distances(double x, double y, double z, const SampleView& others,
+                                           std::size_t n, double beyond2, double* d2) {
+  const auto four = [](const double* p, Lanes& v) LOOPWRIGHT_INLINE_LAMBDA { std::memcpy(&v, p, sizeof v); };
+  Lanes least_even = Lanes{} + beyond2, least_odd = least_even;
+  const auto four_of = [&](std::size_t j, Lanes& least) LOOPWRIGHT_INLINE_LAMBDA {
+    Lanes ox, oy, oz;
+    four(others.x + j, ox);
+    four(others.y + j, oy);
+    four(others.z + j, oz);
+    const Lanes dx = x - ox, dy = y - oy, dz = z - oz, v = dx * dx + dy * dy + dz * dz;
     std::memcpy(d2 + j, &v, sizeof v);
     least = v < least ? v : least;
   };
   std::size_t j = 0;
-  for (; j + 4 <= n; j += 4) {
-    pair_of(j, least_even);
-    pair_of(j + 2, least_odd);
+  for (; j + 8 <= n; j += 8) {
+    four_of(j, least_even);
+    four_of(j + 4, least_odd);
+  }
+  if (j + 4 <= n) {
+    four_of(j, least_even);
+    j += 4;
   }
   for (; j < n; ++j) {
     const double dx = x - others.x[j], dy = y - others.y[j], dz = z - others.z[j];
     d2[j] = dx * dx + dy * dy + dz * dz;
     least_even[0] = d2[j] < least_even[0] ? d2[j] : least_even[0];
   }
-  return std::min(std::min(least_even[0], least_even[1]), std::min(least_odd[0], least_odd[1]));
+  least_even = least_odd < least_even ? least_odd : least_even;
+  return std::min(std::min(least_even[0], least_even[1]), std::min(least_even[2], least_even[3]));
 }
 
 struct ContactPairInput {
@@ -117,7 +123,7 @@ inline SampleWeights sample_weights(int count) {
 }
 
 // Energy alone; infinite if any pair of samples is inside the core.
-inline double contact_energy(const ContactPairInput& in, const ContactLaw& law) {
+LOOPWRIGHT_INLINE double contact_energy(const ContactPairInput& in, const ContactLaw& law) {
   const double outer2 = law.outer * law.outer;
   double energy = 0;
   for (int i = 0; i < in.count; ++i) {
@@ -138,8 +144,9 @@ inline double contact_energy(const ContactPairInput& in, const ContactLaw& law) 
 
 // Energy, gradient and, if `with_hessian`, Hessian. `out.active` is false (and nothing else is set) without
 // contact.
-inline void contact_terms(const ContactPairInput& in, const ContactLaw& law, const SampleWeights& weights,
-                          bool with_hessian, ContactPairOutput& out) {
+LOOPWRIGHT_INLINE void contact_terms(const ContactPairInput& in, const ContactLaw& law,
+                                     const SampleWeights& weights, bool with_hessian,
+                                     ContactPairOutput& out) {
   const double outer2 = law.outer * law.outer;
   const auto n = static_cast<std::size_t>(in.count);
   out.energy = 0;

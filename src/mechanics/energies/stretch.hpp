@@ -9,85 +9,86 @@
 // under them within a segment at no cost: friction is used up by that and cloth near its friction limit finds
 // no rest. A small e ends that and is not felt otherwise.
 #pragma once
-#include <cmath>
-
-#include "mechanics/energies/energy.hpp"
+#include "mechanics/energies/segment_term.hpp"
 
 namespace loopwright {
 
-struct Stretch {
+template <class Real>
+struct StretchOf {
   static constexpr const char* name = "stretch";
   static constexpr std::size_t dofs = 12;
-  double stiffness = 1;    // EA
-  double rest_length = 1;  // h
+  Real stiffness = Real{} + 1.0;    // EA
+  Real rest_length = Real{} + 1.0;  // h
   double evenness = 0.005;
 
-  double energy(const SegmentDofs& x) const {
-    double arc = 0, square = 0;
+  // Length of the segment, speeds at the Gauss points and their variance (the mean of the squares less the
+  // square of the mean, as a sum of squares: the difference would be lost in rounding).
+  struct Along {
+    Real arc{}, variance{};
+    std::array<Real, 4> speed;
+  };
+  LOOPWRIGHT_INLINE void measure(const GaussPoints<Real>& points, Along& along) const {
     for (std::size_t g = 0; g < 4; ++g) {
-      std::array<double, 3> a{};
-      for (std::size_t i = 0; i < 4; ++i)
-        for (std::size_t c = 0; c < 3; ++c) a[c] += gauss_spline[g].slope[i] * x[3 * i + c];
-      const double speed2 = a[0] * a[0] + a[1] * a[1] + a[2] * a[2];
-      arc += gauss_weight[g] * std::sqrt(speed2);
-      square += gauss_weight[g] * speed2;
+      square_root(points.A[g], along.speed[g]);
+      along.arc += gauss_weight[g] * along.speed[g];
     }
-    return energy_of(arc, square);
+    for (std::size_t g = 0; g < 4; ++g) {
+      const Real uneven = along.speed[g] - along.arc;
+      along.variance += gauss_weight[g] * (uneven * uneven);
+    }
   }
-  double energy_of(double arc, double square) const {
-    const double strain = arc / rest_length - 1;
-    return 0.5 * stiffness * (strain * strain * rest_length + evenness / rest_length * (square - arc * arc));
+  LOOPWRIGHT_INLINE void add_energy(const Along& along, Real& energy) const {
+    const Real strain = along.arc / rest_length - 1.0;
+    energy += 0.5 * stiffness * (strain * strain * rest_length + evenness / rest_length * along.variance);
+  }
+  LOOPWRIGHT_INLINE void add_energy(const GaussPoints<Real>& points, Real& energy) const {
+    Along along;
+    measure(points, along);
+    add_energy(along, energy);
   }
 
-  LocalTerm<12> evaluate(const SegmentDofs& x) const {
-    LocalTerm<12> term;
-    double arc = 0, square = 0;
-    std::array<double, 12> G{};  // dL/dx
-    std::array<std::array<double, 3>, 4> tangent{};
-    std::array<double, 4> speed{};
-    for (std::size_t g = 0; g < 4; ++g) {
-      const auto& h1 = gauss_spline[g].slope;
-      std::array<double, 3> a{};
-      for (std::size_t i = 0; i < 4; ++i)
-        for (std::size_t c = 0; c < 3; ++c) a[c] += h1[i] * x[3 * i + c];
-      const double speed2 = a[0] * a[0] + a[1] * a[1] + a[2] * a[2];
-      speed[g] = std::sqrt(speed2);
-      arc += gauss_weight[g] * speed[g];
-      square += gauss_weight[g] * speed2;
-      for (std::size_t c = 0; c < 3; ++c) tangent[g][c] = a[c] / speed[g];
-      for (std::size_t i = 0; i < 4; ++i)
-        for (std::size_t c = 0; c < 3; ++c) G[3 * i + c] += gauss_weight[g] * h1[i] * tangent[g][c];
-    }
-    term.energy = energy_of(arc, square);
-    const double even = evenness * stiffness / rest_length;
+  // Energy and what the mean strain gives to the Hessian go to `term`, derivatives at the points to `law`.
+  LOOPWRIGHT_INLINE void add(const GaussPoints<Real>& points, std::array<PointLaw<Real>, 4>& law,
+                             SegmentTerm<Real>& term) const {
+    Along along;
+    measure(points, along);
+    add_energy(along, term.energy);
+    const Real even = evenness * stiffness / rest_length;
     // along the mean, beside what acts on the square of the speed
-    const double tension = stiffness * (arc / rest_length - 1) - even * arc,
-                 hardness = stiffness / rest_length - even;
-    for (std::size_t i = 0; i < 12; ++i) {
-      term.gradient[i] = tension * G[i];
-      for (std::size_t j = i; j < 12; ++j) term.hessian[i][j] = hardness * G[i] * G[j];
-    }
+    const Real tension = stiffness * (along.arc / rest_length - 1.0) - even * along.arc,
+               hardness = stiffness / rest_length - even;
+    Middle<Real> arc_slope{};  // dL/d(v, a, j)
     for (std::size_t g = 0; g < 4; ++g) {
-      const auto& h1 = gauss_spline[g].slope;
-      const auto& t = tangent[g];
-      for (std::size_t i = 0; i < 4; ++i) {
-        for (std::size_t c = 0; c < 3; ++c)
-          term.gradient[3 * i + c] += even * gauss_weight[g] * h1[i] * speed[g] * t[c];
-        // Blocks on and above the diagonal; below it they are mirrored at the end.
-        for (std::size_t j = i; j < 4; ++j) {
-          const double f = tension * gauss_weight[g] / speed[g] * h1[i] * h1[j],
-                       own = f + even * gauss_weight[g] * h1[i] * h1[j];
-          for (std::size_t c = 0; c < 3; ++c) {
-            for (std::size_t e = 0; e < 3; ++e) term.hessian[3 * i + c][3 * j + e] -= f * t[c] * t[e];
-            term.hessian[3 * i + c][3 * j + c] += own;
-          }
-        }
+      const double t = gauss_place[g];
+      const Real a_speed = gauss_weight[g] / along.speed[g], pull = tension * a_speed;
+      law[g].A += 0.5 * (pull + gauss_weight[g] * even);
+      law[g].AA -= 0.25 * pull / points.A[g];
+      for (std::size_t c = 0; c < 3; ++c) {
+        const Real tangent = a_speed * points.slope[g][c];
+        arc_slope[0][c] += tangent;
+        arc_slope[1][c] += t * tangent;
+        arc_slope[2][c] += (0.5 * t * t) * tangent;
       }
     }
-    for (std::size_t i = 0; i < 12; ++i)
-      for (std::size_t j = 0; j < i; ++j) term.hessian[i][j] = term.hessian[j][i];
-    return term;
+    term.add_dyad(hardness, arc_slope);
+  }
+
+  // By itself, for one segment.
+  double energy(const SegmentDofs& x) const {
+    double sum = 0;
+    add_energy(gauss_points(x), sum);
+    return sum;
+  }
+  LocalTerm<12> evaluate(const SegmentDofs& x) const {
+    const GaussPoints<double> points = gauss_points(x);
+    std::array<PointLaw<double>, 4> law{};
+    SegmentTerm<double> term;
+    add(points, law, term);
+    for (std::size_t g = 0; g < 4; ++g) term.template add_point<false>(points, g, law[g]);
+    return local_term(term);
   }
 };
+
+using Stretch = StretchOf<double>;
 
 }  // namespace loopwright

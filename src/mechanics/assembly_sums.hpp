@@ -1,0 +1,24 @@
+// The sums of an Assembly over the elements of one chunk of control points; for assembly*.cpp alone.
+#pragma once
+#include "mechanics/assembly.hpp"
+#include "mechanics/segment_lanes.hpp"
+
+namespace loopwright {
+
+using Fraction = std::array<double, 2>;
+
+// This chunk owns control points [low, high): it alone writes their rows, and evaluates every element that
+// has one. What is summed over the whole fabric is added by the chunk that owns the element's first point.
+struct Assembly::Chunk {
+  std::int32_t low = 0, high = 0;
+  const YarnState* state = nullptr;
+  Unknowns* gradient = nullptr;   // both or none
+  BlockMatrix* matrix = nullptr;  // its upper triangle alone is added to
+  EnergyParts energy;
+  Measures measures{};
+  Block corner{};
+
+  bool owns(std::int32_t node) const { return node >= low && node < high; }
+};
+
+}  // namespace loopwright

@@ -1,0 +1,90 @@
+#include "mechanics/segment_lanes.hpp"
+
+namespace loopwright {
+namespace {
+
+// Fractional coordinates as the control points' own are taken to the middle: v, a, j.
+using MiddleFractions = std::array<std::array<Lanes, 2>, 3>;
+
+LOOPWRIGHT_INLINE void middle_fractions(const std::array<std::array<Lanes, 2>, 4>& at, MiddleFractions& m) {
+  for (std::size_t c = 0; c < 2; ++c) {
+    const Lanes inner = at[2][c] - at[1][c], outer = at[3][c] - at[0][c];
+    m[0][c] = 0.625 * inner + 0.125 * outer;
+    m[1][c] = 0.5 * ((at[0][c] - at[1][c]) + (at[3][c] - at[2][c]));
+    m[2][c] = outer - 3.0 * inner;
+  }
+}
+
+// Border and corner from the Hessian by v, a and j: blocks times M of these, then M' times that.
+LOOPWRIGHT_INLINE void add_measures(const SegmentTerm<Lanes>& term, const MiddleFractions& f,
+                                    SegmentLanesTerm& out) {
+  // place in `own` of the pair of orders i, j
+  constexpr std::array<std::array<std::size_t, 3>, 3> own_at{{{0, 1, 2}, {1, 3, 4}, {2, 4, 5}}};
+  std::array<std::array<Lanes, 9>, 3> by_order;
+  for (std::size_t i = 0; i < 3; ++i) {
+    Lanes xx{}, yx{}, zx{}, xy{}, yy{}, zy{}, xs{}, ys{}, zs{};
+    for (std::size_t j = 0; j < 3; ++j) {
+      const Lanes &xi = f[j][0], &eta = f[j][1];
+      const Lanes &h_xx = term.own[0][own_at[i][j]], &h_yy = term.own[1][own_at[i][j]];
+      const Lanes &h_xy = term.mixed[0][3 * i + j], &h_yx = term.mixed[0][3 * j + i];
+      const Lanes &h_zx = term.mixed[1][3 * j + i], &h_zy = term.mixed[2][3 * j + i];
+      xx += h_xx * xi, yx += h_yx * xi, zx += h_zx * xi;
+      xy += h_xy * eta, yy += h_yy * eta, zy += h_zy * eta;
+      xs += h_xx * eta, ys += h_yx * eta, zs += h_zx * eta;
+    }
+    by_order[i] = {xx, xy, xs, yx, yy, ys, zx, zy, zs};
+  }
+  for (std::size_t c = 0; c < 9; ++c)
+    spread(by_order[0][c], by_order[1][c], by_order[2][c], out.border[0][c], out.border[1][c],
+           out.border[2][c], out.border[3][c]);
+  out.corner = {};
+  out.measures = {};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      out.corner[c] += f[i][0] * by_order[i][c];
+      out.corner[3 + c] += f[i][1] * by_order[i][3 + c];
+      out.corner[6 + c] += f[i][1] * by_order[i][c];
+    }
+    out.measures[0] += f[i][0] * term.gradient[i][0];
+    out.measures[1] += f[i][1] * term.gradient[i][1];
+    out.measures[2] += f[i][1] * term.gradient[i][0];
+  }
+}
+
+}  // namespace
+
+LOOPWRIGHT_WIDE void evaluate(const SegmentLanes& s, SegmentLanesTerm& out) {
+  Middle<Lanes> middle;
+  middle_of(s.points, middle);
+  const GaussPoints<Lanes> points(middle);
+  SegmentTerm<Lanes> term;
+  std::array<PointLaw<Lanes>, 4> law{};
+  s.stretch.add(points, law, term);
+  out.stretch = term.energy;
+  out.bend = Lanes{};
+  BendOf<Lanes> bend = s.bend;
+  bend.natural = s.set ? &s.natural_curvature : nullptr;
+  bend.add(points, law, out.bend);
+  if (s.set)
+    for (std::size_t g = 0; g < 4; ++g) term.add_point<true>(points, g, law[g]);
+  else
+    for (std::size_t g = 0; g < 4; ++g) term.add_point<false>(points, g, law[g]);
+  spread_gradient(term.gradient, out.gradient);
+  spread_hessian(term, out.blocks);
+  MiddleFractions fractions;
+  middle_fractions(s.fractions, fractions);
+  add_measures(term, fractions, out);
+}
+
+LOOPWRIGHT_WIDE void energies(const SegmentLanes& s, Lanes& stretch, Lanes& bend) {
+  Middle<Lanes> middle;
+  middle_of(s.points, middle);
+  const GaussPoints<Lanes> points(middle);
+  stretch = bend = Lanes{};
+  s.stretch.add_energy(points, stretch);
+  BendOf<Lanes> law = s.bend;
+  law.natural = s.set ? &s.natural_curvature : nullptr;
+  law.add_energy(points, bend);
+}
+
+}  // namespace loopwright

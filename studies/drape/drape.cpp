@@ -2,7 +2,8 @@
 // study_drape [STRUCTURE [WALES COURSES [FRICTION [SET [SHAKES [MOST]]]]]] prints a table and leaves a
 // picture. SET: share of its curvature that the yarn keeps where the flat piece came to rest. SHAKES: how
 // often its tip is pushed down and up again before it is loaded, first by a hundred times 3/8 of its weight,
-// then by less and less. MOST: the largest weight, times that on earth.
+// then by less and less; -1: its contacts forget what they bore, and it comes to rest anew. MOST: the largest
+// weight, times that on earth.
 #include "experiments/drape.hpp"
 
 #include <algorithm>
@@ -163,6 +164,11 @@ int main(int argc, char** argv) {
       if (heights[i] >= edge) overhanging -= weight[i].z;
     rest = shaken(rest.result, options, tip, 37.5 * overhanging, shakes);
     tell(("shaken " + std::to_string(shakes) + " times, let go").c_str(), rest, 0, overhang_mm);
+  }
+  if (shakes < 0) {
+    rest.result.history = {};
+    rest = loaded(rest.result, options, {}, 1);
+    tell("its contacts forgotten, let go", rest, 0, overhang_mm);
   }
   const double before = mean_height(rest.result.fabric, tip);
 

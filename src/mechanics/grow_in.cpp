@@ -17,18 +17,11 @@ struct Growing {
   double tolerance = 0.1;  // of a stage, B/d^2
 };
 
-// Without its core a soft shell would let yarns be pressed together until nothing tells them apart; B/d^5.
+// Without its core a softer shell would let yarns be pressed together until nothing tells them apart; B/d^5.
 constexpr double least_growing_stiffness = 100;
 
-// The shell is whole from the start, the core grows.
-Growing shell_first(ContactLaw law) {
-  law.stiffness = std::max(law.stiffness, least_growing_stiffness);
-  return {law};
-}
-
-// Soft yarn in loops too short for its outer diameter: thin yarn of usual hardness, as thick as the soft law
-// is hard. Near its core a law goes as k W^(1+p) / (D - Dc)^p, which tells the width of a shell of the least
-// growing stiffness that presses as hard.
+// For soft yarn: thin yarn of usual hardness, as thick as the soft law is hard. Near its core a law goes as k
+// W^(1+p) / (D - Dc)^p, which tells the width of a shell of the least growing stiffness that presses as hard.
 Growing thin_yarn(const ContactLaw& law) {
   const double width = law.outer - law.core,
                narrow = width * std::pow(std::min(1.0, law.stiffness / least_growing_stiffness),
@@ -106,10 +99,8 @@ Core grow_core(const Fabric& fabric, const ModelOptions& options, const YarnMode
 
 }  // namespace
 
-bool may_grow_thin(const ContactLaw& law) { return law.stiffness < least_growing_stiffness; }
-
 GrownIn grow_in(const Fabric& fabric, const ModelOptions& options, const YarnModel& full, YarnState& state,
-                Growth growth, const GrowingRun& run) {
+                const GrowingRun& run) {
   const ContactLaw& law = full.contact;
   const auto grown = [&](const Growing& growing, double own_length) {
     return grow_core(fabric, options, full, state, run, growing, own_length);
@@ -119,15 +110,10 @@ GrownIn grow_in(const Fabric& fabric, const ModelOptions& options, const YarnMod
   const auto has_room = [&](double share) {
     return smallest_clearance(full, state, 1.5) > law.core + share * (law.outer - law.core);
   };
-  Core core = Core::whole;
-  double least_room = 0.02;
-  if (growth == Growth::whole_shell) {
-    core = grown(shell_first(law), 0);
-  } else {
-    core = grown(thin_yarn(law), 0);
-    if (core == Core::whole || core == Core::stalled) core = grown(soft_law(law), 1);
-    least_room = 0.001;
-  }
+  const bool soft = law.stiffness < least_growing_stiffness;
+  Core core = grown(soft ? thin_yarn(law) : Growing{law}, 0);
+  if (soft && (core == Core::whole || core == Core::stalled)) core = grown(soft_law(law), 1);
+  const double least_room = soft ? 0.001 : 0.02;
   switch (core) {
     case Core::stopped:
       return GrownIn::stopped;

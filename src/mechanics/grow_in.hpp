@@ -19,15 +19,13 @@ enum class GrownIn {
 using GrowingRun =
     std::function<bool(const YarnModel& model, double share, double tolerance, int iterations)>;
 
-// Two ways for a yarn to grow. The whole shell first: its outer diameter is there from the start, at least as
-// stiff as a hundred B/d^5, and the core grows. Thin yarn first: soft yarn in loops too short for a shell as
-// stiff grows as yarn of usual hardness that is as thick as its own law is hard; then the soft law comes.
-enum class Growth { whole_shell, thin_yarn };
-// Whether growing thin is another way at all: the law is softer than the shell of growing yarn.
-bool may_grow_thin(const ContactLaw& law);
-
+// Usual yarn grows with its whole shell: the outer diameter is there from the start and the core grows. A
+// soft shell (less than a hundred B/d^5) would let yarns be pressed together until nothing tells them apart,
+// and made as stiff as that it may not fit into its loops: soft yarn grows as thin yarn of that hardness, as
+// thick as its own law is hard; then its own law comes.
+//
 // `state` is where the fabric is drawn, and is moved by `run`; `full` is the model of the grown yarn.
 GrownIn grow_in(const Fabric& fabric, const ModelOptions& options, const YarnModel& full, YarnState& state,
-                Growth growth, const GrowingRun& run);
+                const GrowingRun& run);
 
 }  // namespace loopwright

@@ -64,14 +64,7 @@ RelaxResult relax_as_it_is(const Fabric& fabric, const RelaxOptions& options) {
       run(model, share, tolerance, iterations);
       return !result.stopped && result.newton_iterations < options.most_iterations;
     };
-    GrownIn outcome = grow_in(fabric, model_options, full, state, Growth::whole_shell, growing_run);
-    if (outcome == GrownIn::jammed && may_grow_thin(full.contact)) {
-      // Its shell was too hard while it grew, not its core too thick: once more from where it is drawn.
-      state = build_yarn_state(fabric);
-      shift = 1.0;
-      result.pass_throughs = 0;
-      outcome = grow_in(fabric, model_options, full, state, Growth::thin_yarn, growing_run);
-    }
+    const GrownIn outcome = grow_in(fabric, model_options, full, state, growing_run);
     if (outcome == GrownIn::touching) result.message = "yarns touch in the first geometry";
     if (outcome == GrownIn::jammed)
       result.message = "jammed: the yarn is too thick for the length of its loops";

@@ -2,36 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
-#include "mechanics/contact/sample_clearance.hpp"
 #include "mechanics/energies/segment_term.hpp"
+#include "mechanics/grow_in.hpp"
 #include "mechanics/newton.hpp"
 
 namespace loopwright {
 namespace {
-
-// The yarn while it grows in: its shell is whole, its core is smaller than it will be.
-ModelOptions with_core(ModelOptions options, double core) {
-  options.material.contact.core = core;
-  // Without its core a soft shell would let yarns be pressed together until nothing tells them apart.
-  constexpr double least_growing_stiffness = 100;
-  options.material.contact.stiffness = std::max(options.material.contact.stiffness, least_growing_stiffness);
-  // A frictionless yarn can slide into rest states that it cannot leave (moss folded into itself); rubbing
-  // while it grows keeps it where the first geometry put it. Afterwards the yarn's own friction counts.
-  constexpr double least_growing_friction = 0.3;
-  options.material.friction = std::max(options.material.friction, least_growing_friction);
-  return options;
-}
-
-// Lengths of all segments as they are drawn, in d, in the model's order.
-std::vector<double> drawn_lengths(const Fabric& fabric) {
-  std::vector<double> lengths;
-  for (const FabricYarn& yarn : fabric.yarns)
-    for (int e = 0; e < yarn.segments(); ++e) lengths.push_back(arc_length(fabric, yarn, e, e + 1));
-  return lengths;
-}
 
 FlatPlates plates_round(const Fabric& fabric, double room) {
   double low = 0, high = 0;
@@ -58,7 +36,6 @@ RelaxResult relax_as_it_is(const Fabric& fabric, const RelaxOptions& options) {
   RelaxResult result;
   YarnState state = build_yarn_state(fabric);
   const YarnModel full = build_yarn_model(fabric, model_options);
-  const double outer = full.contact.outer;
 
   NewtonResult newton_result;
   double shift = 1.0;
@@ -82,51 +59,22 @@ RelaxResult relax_as_it_is(const Fabric& fabric, const RelaxOptions& options) {
     result.stopped = newton_result.stopped;
   };
 
-  // Grow-in: the yarn's hard core grows as room is made, its soft shell is there from the start. It keeps the
-  // lengths that it was drawn with until the core is whole, and then goes to its own in small steps: loops
-  // drawn too long or too short would drag yarn through whole courses before it can hold itself.
   if (options.grow_in) {
-    const std::vector<double> drawn = drawn_lengths(fabric);
-    double most_strain = 0;
-    for (std::size_t e = 0; e < drawn.size(); ++e)
-      most_strain = std::max(most_strain, std::abs(drawn[e] / full.natural_length[e] - 1));
-    const auto drawn_in = [&](YarnModel model, double share) {  // 0: lengths as drawn, 1: those of the yarn
-      for (std::size_t e = 0; e < drawn.size(); ++e)
-        model.natural_length[e] = (1 - share) * drawn[e] + share * full.natural_length[e];
-      return model;
+    const auto growing_run = [&](const YarnModel& model, double share, double tolerance, int iterations) {
+      run(model, share, tolerance, iterations);
+      return !result.stopped && result.newton_iterations < options.most_iterations;
     };
-    // The core for which the nearest pieces of yarn still have `left` of the shell between them; below zero
-    // where they nearly touch: then the law is finite everywhere, and only the safe step parts the yarns.
-    constexpr double left = 0.3, strain_a_stage = 0.15, enough_growth = 0.02, least_gap = 0.02,
-                     any_growth = 1e-4;
-    constexpr int most_stalls = 10;
-    int stalls = 0;
-    const double core = full.contact.core,
-                 length_step = strain_a_stage / std::max(strain_a_stage, most_strain);
-    double own_length = 0, core_before = -std::numeric_limits<double>::infinity();
-    while (!result.stopped && result.newton_iterations < options.most_iterations) {
-      const double nearest = smallest_clearance(full, state, 1.5);
-      if (!(nearest > 1e-4)) {
-        result.message = "yarns touch in the first geometry";
-        break;
-      }
-      const double core_now = std::min(core, (nearest - left * outer) / (1 - left));
-      // A knot drawn too tight opens only with more yarn.
-      if (core_now == core || core_now < core_before + enough_growth) own_length += length_step;
-      if (core_now == core && own_length >= 1) break;
-      // Yarn pressed nearer than the growing law wishes, at its own length: soft yarn in tight loops lies
-      // like that, and the true law takes over if no core is in another.
-      if (core_now > core_before + any_growth) stalls = 0;
-      if (own_length >= 1 && ++stalls > most_stalls) {
-        if (!(nearest > core + least_gap * (outer - core)))
-          result.message = "jammed: the yarn is too thick for the length of its loops";
-        break;
-      }
-      core_before = core_now;
-      const double share = std::clamp(nearest / (core + left * (outer - core)), 0.0, 0.999);
-      run(drawn_in(build_yarn_model(fabric, with_core(model_options, core_now)), std::min(own_length, 1.0)),
-          share, 0.1, 12);
+    GrownIn outcome = grow_in(fabric, model_options, full, state, Growth::whole_shell, growing_run);
+    if (outcome == GrownIn::jammed && may_grow_thin(full.contact)) {
+      // Its shell was too hard while it grew, not its core too thick: once more from where it is drawn.
+      state = build_yarn_state(fabric);
+      shift = 1.0;
+      result.pass_throughs = 0;
+      outcome = grow_in(fabric, model_options, full, state, Growth::thin_yarn, growing_run);
     }
+    if (outcome == GrownIn::touching) result.message = "yarns touch in the first geometry";
+    if (outcome == GrownIn::jammed)
+      result.message = "jammed: the yarn is too thick for the length of its loops";
   }
   grown = true;
   if (!result.stopped && result.message.empty()) run(full, 1, options.tolerance, options.most_iterations);

@@ -1,5 +1,9 @@
 // A piece of cloth with its first courses on a table and the others over its edge, under its weight.
-// study_drape [STRUCTURE [WALES COURSES [FRICTION]]] prints a table and leaves a picture.
+// study_drape [STRUCTURE [WALES COURSES [FRICTION [SET [SHAKES [MOST]]]]]] prints a table and leaves a
+// picture. SET: share of its curvature that the yarn keeps where the flat piece came to rest. SHAKES: how
+// often its tip is pushed down and up again before it is loaded, first by a hundred times 3/8 of its weight,
+// then by less and less; -1: its contacts forget what they bore, and it comes to rest anew. MOST: the largest
+// weight, times that on earth.
 #include "experiments/drape.hpp"
 
 #include <algorithm>
@@ -67,6 +71,19 @@ Loaded loaded(const RelaxResult& start, const RelaxOptions& options, const std::
   return end;
 }
 
+// Pushed down and up in turn at these points, by less and less, and let go.
+Loaded shaken(const RelaxResult& start, const RelaxOptions& options, const std::vector<std::size_t>& points,
+              double force, int times) {
+  Loaded end{start, {}};
+  const std::size_t all = points_of(start.fabric).size();
+  for (int k = 0; k < times; ++k, force *= -0.6) {
+    std::vector<Vec3> push(all);
+    for (const std::size_t i : points) push[i] = {0, 0, -force / static_cast<double>(points.size())};
+    end = loaded(end.result, options, push, 4);
+  }
+  return loaded(end.result, options, {}, 1);
+}
+
 void tell(const char* what, const Loaded& l, double deflection_mm, double overhang_mm) {
   const Vec3 support = support_force(l.result.fabric, l.model, l.result.history),
              load = total_load(l.result.fabric, l.model);
@@ -111,9 +128,13 @@ int main(int argc, char** argv) {
   const Fabric first = first_geometry(knitting, request);
   RelaxOptions options = relax_options(first, knitting.program, request);
   options.most_iterations = 600;
+  options.set = argc > 5 ? std::stod(argv[5]) : 0;
+  const int shakes = argc > 6 ? std::stoi(argv[6]) : 0;
+  const double most = argc > 7 ? std::stod(argv[7]) : 30;
   RelaxResult flat = relax(first, options);
-  std::printf("%s, %d x %d loops: flat, %d steps, residual %.1e, %s\n", structure.c_str(), wales, courses,
-              flat.newton_iterations, flat.residual, flat.message.c_str());
+  std::printf("%s, %d x %d loops, friction %.2f, set %.2f: flat, %d steps, residual %.1e, %s\n",
+              structure.c_str(), wales, courses, *request.friction, options.set, flat.newton_iterations,
+              flat.residual, flat.message.c_str());
   options.grow_in = false;
   options.plate_room = -1;
   options.tolerance = 1e-6;
@@ -131,13 +152,28 @@ int main(int argc, char** argv) {
   std::vector<std::size_t> tip;
   for (std::size_t i = 0; i < heights.size(); ++i)
     if (heights[i] > top - 2) tip.push_back(i);
-  const double before = mean_height(rest.result.fabric, tip);
   tell("on the table, no weight", rest, 0, overhang_mm);
-  const PieceSize size = piece_size(flat.fabric);
-  std::printf("width %.2f mm, overhang %.2f mm\n", size.width * d_mm, overhang_mm);
-
   const YarnMaterial& material = options.model.material;
+  const PieceSize size = piece_size(flat.fabric);
+  const double width_mm = size.width * d_mm;
+  std::printf("width %.2f mm, overhang %.2f mm\n", width_mm, overhang_mm);
+  if (shakes > 0) {
+    double overhanging = 0;
+    const std::vector<Vec3> weight = weight_loads(rest.result.fabric, material, {0, 0, -earth});
+    for (std::size_t i = 0; i < weight.size(); ++i)
+      if (heights[i] >= edge) overhanging -= weight[i].z;
+    rest = shaken(rest.result, options, tip, 37.5 * overhanging, shakes);
+    tell(("shaken " + std::to_string(shakes) + " times, let go").c_str(), rest, 0, overhang_mm);
+  }
+  if (shakes < 0) {
+    rest.result.history = {};
+    rest = loaded(rest.result, options, {}, 1);
+    tell("its contacts forgotten, let go", rest, 0, overhang_mm);
+  }
+  const double before = mean_height(rest.result.fabric, tip);
+
   for (const double times : {1.0, 10.0, 30.0}) {
+    if (times > most) break;
     std::vector<Vec3> weight = weight_loads(rest.result.fabric, material, {0, 0, -times * earth});
     double overhanging = 0;
     for (std::size_t i = 0; i < weight.size(); ++i)
@@ -145,6 +181,10 @@ int main(int argc, char** argv) {
     const Loaded own = loaded(rest.result, options, weight, 4);
     const double sag = (before - mean_height(own.result.fabric, tip)) * d_mm;
     tell(("own weight, " + std::to_string(static_cast<int>(times)) + " g").c_str(), own, sag, overhang_mm);
+    // A beam: q L^4 / (8 delta), q the weight of an area.
+    const double d = d_mm * 1e-3, weight_N = overhanging * material.reference_bend_N_m2 / (d * d),
+                 rigidity = weight_N / (width_mm * 1e-3) * std::pow(overhang_mm * 1e-3, 3) / (8e-3 * sag);
+    std::printf("   flexural rigidity %.4f mN m\n", 1e3 * rigidity);
     // A beam's tip sinks as much under 3/8 of its weight at the tip: q L^4 / 8 = (3/8 q L) L^3 / 3.
     std::vector<Vec3> at_tip(weight.size());
     for (const std::size_t i : tip)

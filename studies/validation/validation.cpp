@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -200,25 +201,34 @@ void print_shaken() {
   std::printf("\n");
 }
 
-// Yarn of Singal and others, Nature Communications 15, 2622 (2024), [mm, N]: B 0.09 N mm^2 and shell 1.2e-3
-// (both twice what their code says, which leaves out the half of the bend energy and counts pairs twice).
+// Yarn [mm, N] and loops. Singal and others, Nature Communications 15, 2622 (2024): B 0.09 N mm^2 and shell
+// 1.2e-3 (both twice what their code says, which leaves out the half of the bend energy and counts pairs
+// twice). 77 tex: Ding, Sanchez, Bertoldi, Rycroft, arXiv 2307.12360, core and shell estimated
+// (data/materials). Measured strains at 0.1 N/mm; NaN: none that may be looked at here.
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 struct Acrylic {
   const char *name, *courses;
-  double loop, diameter, core;        // mm
-  double course_strain, wale_strain;  // measured at 0.1 N/mm
+  double loop, diameter, core;  // mm
+  double course_strain = unknown, wale_strain = unknown;
+  double B = 0.09, EA = 300, shell = 1.2e-3;  // N mm^2, N, N/mm^3
 };
 constexpr Acrylic acrylics[] = {{"plain", "g", 11.28, 1.48, 0.65, .271, .1425},
                                 {"garter", "g\ne", 10.55, 1.08, 0.51, .326, .570},
-                                {"rib", "ge", 16.10, 2.36, 0.82, 1.730, .366}};
+                                {"rib", "ge", 16.10, 2.36, 0.82, 1.730, .366},
+                                {"seed", "ge\neg", 15.67, 2.40, 0.57}};
+constexpr Acrylic of_77_tex(const char* name, const char* courses) {
+  return {name, courses, 7.23, 1.05, 0.5, unknown, unknown, 0.0147, 68, 6e-4};
+}
+constexpr Acrylic acrylics_77_tex[] = {of_77_tex("plain", "g"), of_77_tex("garter", "g\ne"),
+                                       of_77_tex("rib", "ge"), of_77_tex("seed", "ge\neg")};
 
 RelaxOptions acrylic_yarn(const Acrylic& a, double friction) {
-  constexpr double B = 0.09, EA = 300, shell = 1.2e-3;
   RelaxOptions options;
-  options.model.material = {EA * a.diameter * a.diameter / B,
+  options.model.material = {a.EA * a.diameter * a.diameter / a.B,
                             1,
-                            {1, a.core / a.diameter, shell * std::pow(a.diameter, 5) / B, 2.4},
+                            {1, a.core / a.diameter, a.shell * std::pow(a.diameter, 5) / a.B, 2.4},
                             friction,
-                            B * 1e-6};
+                            a.B * 1e-6};
   options.model.free = {true, true, false};
   return options;
 }
@@ -261,36 +271,69 @@ class Specimen {
   int unsettled_ = 0;
 };
 
+struct Yarn {
+  double friction, set;  // set: where it came to rest
+};
+
 // First pull: from rest. Second pull, as measured: pulled to 200 N/m once, let go, and pulled again; strain
 // from where the second pull begins. Clamped specimens lie between free and held across.
-void print_acrylic() {
+void print_pulls(const Acrylic& a, Yarn yarn) {
+  RelaxOptions options = acrylic_yarn(a, yarn.friction);
+  options.set = yarn.set;
+  const RelaxResult rest = rested(cell_of(a.courses, a.loop, a.diameter, 24), options);
+  const Spacing k = spacing(rest.fabric);
   std::printf(
-      "acrylic fabrics: strain at 0.1 N/mm (100 N/m), measured and here: in the first pull from rest, and in "
-      "the\n"
-      "second after one to 0.2 N/mm, counted from where it begins (how far that is from rest)\n");
-  std::printf(
-      "  fabric  along   friction  set  across  measured   first      off   second      off   begins at\n");
-  struct Yarn {
-    double friction, set;  // set: where it came to rest
+      "  %s of %.2f mm, friction %.2f, set %.1f: %.3f x %.3f mm a loop, yarn stretched by %.2f %%%s\n",
+      a.name, a.loop, yarn.friction, yarn.set, a.diameter * rest.fabric.width / rest.fabric.wales,
+      a.diameter * rest.fabric.height / rest.fabric.courses, 100 * (k.loop_length * a.diameter / a.loop - 1),
+      rest.converged ? "" : ", NOT AT REST");
+  if (!rest.converged) return;
+  const auto known = [](double measured) {
+    char text[16] = "     -";
+    if (std::isfinite(measured)) std::snprintf(text, sizeof text, "%6.3f", measured);
+    return std::string(text);
   };
-  for (const Acrylic& a : acrylics)
-    for (const Yarn yarn : {Yarn{0, 0}, Yarn{0.25, 0}, Yarn{0.25, 0.5}, Yarn{0.25, 0.8}}) {
-      RelaxOptions options = acrylic_yarn(a, yarn.friction);
-      options.set = yarn.set;
-      const RelaxResult rest = rested(cell_of(a.courses, a.loop, a.diameter, 24), options);
-      for (const bool course : {true, false})
-        for (const bool held : {false, true}) {
-          Specimen cloth(rest, options, course, held);
-          const double measured = course ? a.course_strain : a.wale_strain, first = cloth.bear(100);
-          cloth.bear(200);
-          const double begin = cloth.bear(0), second = (1 + cloth.bear(100)) / (1 + begin) - 1;
-          std::printf("  %-7s %-7s  %5.2f  %5.2f   %s    %6.3f   %6.3f  %+6.1f %%   %6.3f  %+6.1f %%   %+.3f%s\n",
-                      a.name, course ? "courses" : "wales", yarn.friction, yarn.set, held ? "held" : "free", measured, first,
-                      100 * (first / measured - 1), second, 100 * (second / measured - 1), begin,
-                      cloth.unsettled() > 0 ? "  some points not at rest" : "");
-          std::fflush(stdout);
-        }
+  const auto off = [](double strain, double measured) {
+    char text[16] = "         ";
+    if (std::isfinite(measured)) std::snprintf(text, sizeof text, "%+6.1f %%", 100 * (strain / measured - 1));
+    return std::string(text);
+  };
+  for (const bool course : {true, false})
+    for (const bool held : {false, true}) {
+      Specimen cloth(rest, options, course, held);
+      const double measured = course ? a.course_strain : a.wale_strain, first = cloth.bear(100);
+      cloth.bear(200);
+      const double begin = cloth.bear(0), second = (1 + cloth.bear(100)) / (1 + begin) - 1;
+      std::printf("    %-7s %s   %s   %6.3f  %s   %6.3f  %s   %+.3f%s\n", course ? "courses" : "wales",
+                  held ? "held" : "free", known(measured).c_str(), first, off(first, measured).c_str(),
+                  second, off(second, measured).c_str(), begin,
+                  cloth.unsettled() > 0 ? "  some points not at rest" : "");
+      std::fflush(stdout);
     }
+}
+
+void print_acrylic_heading(const char* yarn) {
+  std::printf(
+      "acrylic fabrics%s: strain at 0.1 N/mm (100 N/m), measured and here: in the first pull from rest, and "
+      "in "
+      "the\n"
+      "second after one to 0.2 N/mm, counted from where it begins (how far that is from rest)\n",
+      yarn);
+  std::printf("    along   across  measured  first      off   second      off   begins at\n");
+}
+
+void print_acrylic() {
+  print_acrylic_heading("");
+  for (const Acrylic& a : acrylics)
+    for (const Yarn yarn : {Yarn{0, 0}, Yarn{0.25, 0}, Yarn{0.25, 0.5}, Yarn{0.25, 0.8}})
+      print_pulls(a, yarn);
+  std::printf("\n");
+}
+
+void print_acrylic_77_tex() {
+  print_acrylic_heading(", 77 tex");
+  for (const Acrylic& a : acrylics_77_tex)
+    for (const Yarn yarn : {Yarn{0.25, 0}, Yarn{0.25, 0.5}}) print_pulls(a, yarn);
   std::printf("\n");
 }
 
@@ -397,8 +440,8 @@ int main(int count, char** words) {
   } parts[] = {{"tightness", print_tightness},     {"curves", [] { print_curves(0.12, true); }},
                {"corrugation", print_corrugation}, {"scaling", print_scaling},
                {"shaken", print_shaken},           {"simulated", print_simulated_acrylic},
-               {"acrylic", print_acrylic},         {"hysteresis", print_hysteresis},
-               {"weight", print_areal_weight}};
+               {"acrylic", print_acrylic},         {"acrylic77", print_acrylic_77_tex},
+               {"hysteresis", print_hysteresis},   {"weight", print_areal_weight}};
   for (const auto& part : parts)
     if (count < 2 || std::string(words[1]) == part.name) part.print();
 }

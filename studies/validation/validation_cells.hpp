@@ -40,14 +40,16 @@ inline RelaxOptions hard_yarn(double friction) {
   return options;
 }
 
-// In two stages, as in study_cells: grown in at fixed measures, then let go.
+// In two stages, as in study_cells: grown in at fixed measures, then let go. Where yarn does not fit into the
+// measures that it is drawn with, it grows in free.
 inline RelaxResult rested(const Fabric& start, RelaxOptions options) {
   RelaxOptions grow = options;
   grow.model.free = {false, false, false};
   grow.tolerance = 0.05;
   grow.set = 0;  // yarn is set where it comes to rest
-  options.grow_in = false;
-  return relax(relax(start, grow).fabric, options);
+  const RelaxResult grown = relax(start, grow);
+  options.grow_in = !grown.converged;
+  return relax(grown.converged ? grown.fabric : start, options);
 }
 
 struct Spacing {

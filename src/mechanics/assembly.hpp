@@ -10,7 +10,7 @@
 #include "mechanics/contact/segment_pairs.hpp"
 #include "mechanics/contact_history.hpp"
 #include "mechanics/energies/friction.hpp"
-#include "mechanics/linear/upper_blocks.hpp"
+#include "mechanics/linear/block_matrix.hpp"
 #include "mechanics/yarn_model.hpp"
 
 namespace loopwright {

@@ -42,11 +42,6 @@ void add_to(Block& to, const Block& from) {
 
 }  // namespace
 
-FourNodes Assembly::nodes_of(int segment) const {
-  const auto f = static_cast<std::size_t>(model_.first[static_cast<std::size_t>(segment)]);
-  return {model_.base[f], model_.base[f + 1], model_.base[f + 2], model_.base[f + 3]};
-}
-
 bool Assembly::touches(const Chunk& chunk, int segment) const {
   const FourNodes n = nodes_of(segment);
   return chunk.owns(n[0]) || chunk.owns(n[1]) || chunk.owns(n[2]) || chunk.owns(n[3]);

@@ -1,10 +1,13 @@
 // How the cost of rest grows with the piece: held pieces of a notation's repeat, from their relaxed cell to
 // rest and then to rest with the frame two per cent wider.
 //   study_solver_scaling FILE.verm N...      pieces of N x N loops
-// With REST_ONLY in the environment the frame is not pulled; with VERBOSE every step says how it went.
+// With REST_ONLY in the environment the frame is not pulled, with PARTS=4 in four equal parts instead of at
+// once; with VERBOSE every step says how it went.
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -67,14 +70,21 @@ int run(const std::string& file, int n) {
   RelaxResult rest = timed("rest", loops, fabric, options);
   if (!rest.converged) return 1;
   if (std::getenv("REST_ONLY")) return 0;
-  // The frame two per cent wider, all yarn carried along.
+  // The frame two per cent wider, all yarn carried along, at once or in equal parts.
+  const char* parts_wanted = std::getenv("PARTS");
+  const int parts = parts_wanted ? std::max(1, std::atoi(parts_wanted)) : 1;
   options.model.free.width = false;
   options.model.plates = rest.plates;
-  options.history = rest.history;
-  rest.fabric.width *= 1.02;
-  for (FabricYarn& yarn : rest.fabric.yarns)
-    for (Vec3& p : yarn.control_points) p.x *= 1.02;
-  timed("+2 %", loops, rest.fabric, options);
+  const double wider = std::pow(1.02, 1.0 / parts);
+  for (int part = 1; part <= parts; ++part) {
+    options.history = rest.history;
+    rest.fabric.width *= wider;
+    for (FabricYarn& yarn : rest.fabric.yarns)
+      for (Vec3& p : yarn.control_points) p.x *= wider;
+    const std::string what = parts == 1 ? "+2 %" : std::to_string(part) + " of " + std::to_string(parts);
+    rest = timed(what.c_str(), loops, rest.fabric, options);
+    if (!rest.converged) return 1;
+  }
   return 0;
 }
 

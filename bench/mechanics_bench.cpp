@@ -14,9 +14,11 @@
 #include <vector>
 
 #include "base/parallel.hpp"
+#include "base/wide.hpp"
 #include "geometry/fit_fabric.hpp"
 #include "geometry/periodic_cell.hpp"
 #include "machine/run_machine.hpp"
+#include "mechanics/energies/lanes.hpp"
 #include "mechanics/linear/cholesky.hpp"
 #include "mechanics/safe_step.hpp"
 #include "notation/read_vermiculation.hpp"
@@ -87,7 +89,7 @@ struct Kernels {
 };
 
 // What this machine allows one core: doubles read from memory and from the cache, and additions with
-// multiplications in the instruction set that the program is built for (sixteen independent chains of pairs).
+// multiplications as the kernels run them (eight independent chains of lanes, no fused products).
 double read_rate(std::size_t doubles) {  // bytes a second
   const std::vector<double> data(doubles, 1.0);
   double best = 0;
@@ -105,23 +107,26 @@ double read_rate(std::size_t doubles) {  // bytes a second
   }
   return best;
 }
+LOOPWRIGHT_WIDE void add_and_multiply(int rounds, Lanes& sum, const Lanes& factor, const Lanes& summand) {
+  Lanes a = sum, b = a, c = a, d = a, e = a, f = a, g = a, h = a;
+  for (int i = 0; i < rounds; ++i) {
+    a = a * factor + summand, b = b * factor + summand, c = c * factor + summand, d = d * factor + summand;
+    e = e * factor + summand, f = f * factor + summand, g = g * factor + summand, h = h * factor + summand;
+  }
+  sum = a + b + c + d + e + f + g + h;
+}
 double flop_rate() {  // a second
-  using Two = double __attribute__((vector_size(16)));
   constexpr int rounds = 1'000'000;
   double best = 0;
   for (int trial = 0; trial < 9; ++trial) {
-    Two a{1, 1}, b = a, c = a, d = a, e = a, f = a, g = a, h = a;
-    Two factor{0.999999, 0.999999}, summand{1e-6, 1e-6};
+    Lanes sum = Lanes{} + 1.0, factor = Lanes{} + 0.999999, summand = Lanes{} + 1e-6;
     benchmark::DoNotOptimize(factor);
     benchmark::DoNotOptimize(summand);
     const auto start = std::chrono::steady_clock::now();
-    for (int round = 0; round < rounds; ++round) {
-      a = a * factor + summand, b = b * factor + summand, c = c * factor + summand, d = d * factor + summand;
-      e = e * factor + summand, f = f * factor + summand, g = g * factor + summand, h = h * factor + summand;
-    }
+    add_and_multiply(rounds, sum, factor, summand);
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-    benchmark::DoNotOptimize(a += b + c + d + e + f + g + h);
-    best = std::max(best, 32.0 * rounds / taken.count());
+    benchmark::DoNotOptimize(sum);
+    best = std::max(best, 16.0 * lanes * rounds / taken.count());
   }
   return best;
 }
@@ -164,14 +169,12 @@ void per_loop(benchmark::State& state, int n) {
                          benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-// Flops of one segment, by the formulas in energies/: at each of four Gauss points p' and p'' (48), their
-// products (18), the derivatives by them (40), three 3 x 3 matrices of bend (150), the gradient (48), ten
-// blocks (8 an entry); stretch: the tangent (20), ten blocks of a dyad (3 an entry), the gradient (48).
-constexpr double bend_flops = 4 * (48 + 18 + 40 + 150 + 48 + 10 * 9 * 8),
-                 stretch_flops = 4 * (20 + 10 * 9 * 3 + 48);
-// Adding a segment's sixteen blocks, their columns of the border and its corner.
-constexpr double block_flops = 9 + 9 + 12,
-                 segment_flops = bend_flops + stretch_flops + 16 * (9 + block_flops);
+// Flops of one segment, as written in energies/: to the middle (33); at each of four Gauss points p', p'' and
+// their products (33), stretch (34), bend (33), what the law adds (305); the dyad of stretch (108); gradient,
+// Hessian and border to control points (33 + 462 + 99); fractions (22), border and corner by v, a, j (234).
+// And ten blocks, the border and the gradient are added to what is there.
+constexpr double segment_flops =
+    33 + 4 * (33 + 34 + 33 + 305) + 108 + (33 + 462 + 99) + 22 + 234 + (10 * 9 + 4 * 9 + 4 * 3);
 // Matrix, border and gradient are written once (and fetched before that), places and indices are read.
 double matrix_bytes(const BlockMatrix& m) {
   return 2 * static_cast<double>(m.column.size()) * sizeof(Block) +
@@ -182,8 +185,11 @@ double matrix_bytes(const BlockMatrix& m) {
 // Contact as it is in this state: distances of samples whose row is near the other segment, pairs of samples
 // in the law, segment pairs that are folded into control points.
 Work contact_work(const Kernels& k) {
-  constexpr double distance = 8, box = 12, in_law = 90, fold = 2 * (10 * 12 + 12),
-                   active_blocks = 64 * block_flops;
+  // In the law: its power by series (70), values (20), force and Hessian (45), sums at both samples (18) and
+  // by the weights of b (48). A sample that is touched: its force (20) and Hessian (198) by the weights; of a
+  // besides what it has with b (192). A pair of segments: border (1000) and corner (144), 36 blocks.
+  constexpr double distance = 8, box = 12, in_law = 70 + 20 + 45 + 18 + 48, fold = 218, with_b = 192,
+                   active_blocks = 1000 + 144 + 36 * 9;
   const auto samples = static_cast<std::size_t>(k.model.samples);
   const SamplePlaces& p = k.assembly.places();
   Work work{0, 0};
@@ -206,7 +212,7 @@ Work contact_work(const Kernels& k) {
         work.flops += in_law;
         touched = true;
       }
-      if (touched) work.flops += fold + 16 * 12;
+      if (touched) work.flops += 2 * fold + with_b;  // of b there are as many, or nearly
     }
   }
   return work;

@@ -16,8 +16,7 @@ int chunk_count(int nodes) { return std::clamp(nodes / 3000, 1, 16); }
 
 }  // namespace
 
-Assembly::Assembly(const YarnModel& model)
-    : model_(model), products_(weight_products(model.weights, model.samples)) {}
+Assembly::Assembly(const YarnModel& model) : model_(model) {}
 
 double Assembly::law_scale(int a, int b) const {
   return 0.5 * (model_.yarn_of(a).diameter + model_.yarn_of(b).diameter);

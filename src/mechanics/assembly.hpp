@@ -8,10 +8,9 @@
 #include <vector>
 
 #include "mechanics/contact/segment_pairs.hpp"
-#include "mechanics/contact_fold.hpp"
 #include "mechanics/contact_history.hpp"
 #include "mechanics/energies/friction.hpp"
-#include "mechanics/linear/upper_blocks.hpp"
+#include "mechanics/linear/block_matrix.hpp"
 #include "mechanics/yarn_model.hpp"
 
 namespace loopwright {
@@ -84,9 +83,9 @@ class Assembly {
   void add_plates(int segment, Chunk& chunk) const;
   bool contact_input(const SegmentPair& pair, const Vec3& image, double reach, ContactPairInput& in) const;
   void add_contacts(Chunk& chunk);
-  FrictionContact add_friction(const SegmentPair& pair, const YarnState& state, ContactFold& fold) const;
+  FrictionContact add_friction(const SegmentPair& pair, const YarnState& state, ContactTerm& term) const;
   void scatter(const SegmentLanesTerm& term, std::size_t lane, int segment, Chunk& chunk) const;
-  void scatter(const ContactFold& fold, const SegmentPair& pair, Chunk& chunk) const;
+  void scatter(const ContactTerm& term, const SegmentPair& pair, Chunk& chunk) const;
   Vec3 remembered_slip(const SegmentPair& pair) const;
   Vec3 relative_place(const FrictionContact& contact, const YarnState& state) const;
   void prepare(const YarnState& state);
@@ -96,7 +95,6 @@ class Assembly {
   double law_scale(int segment_a, int segment_b) const;
 
   const YarnModel& model_;
-  WeightProducts products_;
   std::vector<SegmentPair> pairs_;
   std::vector<std::int32_t> active_;       // pairs in contact in the last Hessian's state
   std::vector<FrictionContact> friction_;  // one for each of these, if there is friction

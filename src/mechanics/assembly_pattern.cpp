@@ -55,6 +55,7 @@ void Assembly::listed_pattern(BlockMatrix& matrix) const {
   std::vector<std::int32_t> last_row(static_cast<std::size_t>(model_.nodes), -1);
   std::vector<std::int32_t>& columns = matrix.column;
   columns.clear();
+  columns.reserve(7 * static_cast<std::size_t>(model_.nodes) + 10 * active_.size());  // about what comes
   for (const YarnModel::Yarn& yarn : model_.yarns)
     for (int i = 0; i < yarn.nodes; ++i) {
       const std::int32_t row = yarn.first_node + i;

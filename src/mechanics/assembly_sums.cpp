@@ -13,19 +13,6 @@ void add(Vec3& to, double x, double y, double z) {
   to.z += z;
 }
 
-// to += (a symmetric block) M, M = [[xi, 0, eta], [0, eta, 0], [0, 0, 0]]
-void add_times_measures(const Symmetric3& h, const Fraction& f, Block& to) {
-  to[0] += h[0] * f[0];
-  to[1] += h[1] * f[1];
-  to[2] += h[0] * f[1];
-  to[3] += h[1] * f[0];
-  to[4] += h[3] * f[1];
-  to[5] += h[1] * f[1];
-  to[6] += h[2] * f[0];
-  to[7] += h[4] * f[1];
-  to[8] += h[2] * f[1];
-}
-
 // to += M' column
 void add_measures_transposed(const Fraction& f, const Block& column, Block& to) {
   for (std::size_t k = 0; k < 3; ++k) {
@@ -35,32 +22,25 @@ void add_measures_transposed(const Fraction& f, const Block& column, Block& to) 
   }
 }
 
-void add_symmetric(const Symmetric3& s, Block& to) {
-  to[0] += s[0];
-  to[1] += s[1];
-  to[2] += s[2];
-  to[3] += s[1];
-  to[4] += s[3];
-  to[5] += s[4];
-  to[6] += s[2];
-  to[7] += s[4];
-  to[8] += s[5];
+// A symmetric block: that of one lane.
+void add_symmetric(const std::array<Lanes, 6>& s, std::size_t lane, Block& to) {
+  const double xy = s[1][lane], xz = s[2][lane], yz = s[4][lane];
+  to[0] += s[0][lane];
+  to[1] += xy;
+  to[2] += xz;
+  to[3] += xy;
+  to[4] += s[3][lane];
+  to[5] += yz;
+  to[6] += xz;
+  to[7] += yz;
+  to[8] += s[5][lane];
 }
 
 void add_to(Block& to, const Block& from) {
   for (std::size_t k = 0; k < 9; ++k) to[k] += from[k];
 }
 
-void add_scaled(double by, const Symmetric3& from, Symmetric3& to) {
-  for (std::size_t d = 0; d < 6; ++d) to[d] += by * from[d];
-}
-
 }  // namespace
-
-FourNodes Assembly::nodes_of(int segment) const {
-  const auto f = static_cast<std::size_t>(model_.first[static_cast<std::size_t>(segment)]);
-  return {model_.base[f], model_.base[f + 1], model_.base[f + 2], model_.base[f + 3]};
-}
 
 bool Assembly::touches(const Chunk& chunk, int segment) const {
   const FourNodes n = nodes_of(segment);
@@ -196,7 +176,7 @@ bool Assembly::contact_input(const SegmentPair& pair, const Vec3& image, double 
 
 void Assembly::add_contacts(Chunk& chunk) {
   ContactPairInput in;
-  ContactFold fold;
+  ContactTerm term;
   const auto owns_first = [&](int segment) {
     return chunk.owns(model_.base[static_cast<std::size_t>(model_.first[static_cast<std::size_t>(segment)])]);
   };
@@ -210,31 +190,32 @@ void Assembly::add_contacts(Chunk& chunk) {
       continue;
     const ContactLaw law = scale == 1 ? model_.contact : model_.contact.scaled(scale);
     if (!chunk.matrix) {
-      chunk.energy.contact += folded_energy(in, law);
+      chunk.energy.contact += contact_energy(in, law);
       continue;
     }
-    fold_contact(in, law, model_.weights, products_, fold);
-    if (!fold.active) continue;
-    if (whole) chunk.energy.contact += fold.energy;
+    evaluate(in, law, model_.weights, term);
+    if (!term.active) continue;
+    if (whole) chunk.energy.contact += term.energy;
     if (model_.friction > 0) {
-      const FrictionContact rub = add_friction(pair, *chunk.state, fold);
+      const FrictionContact rub = add_friction(pair, *chunk.state, term);
       if (whole) friction_[k] = rub;
     }
-    scatter(fold, pair, chunk);
+    scatter(term, pair, chunk);
   }
 }
 
 // Friction: the contact's load, normal and place, weighted with the force of each sample. Its force and
-// Hessian are added to the fold.
+// Hessian are added to the contact's.
 Assembly::FrictionContact Assembly::add_friction(const SegmentPair& pair, const YarnState& state,
-                                                 ContactFold& fold) const {
+                                                 ContactTerm& term) const {
   FrictionContact rub;
-  const Vec3 push{fold.push[0], fold.push[1], fold.push[2]};
-  if (!(fold.size_a > 0 && fold.size_b > 0 && squared_norm(push) > 0)) return rub;
+  const Vec3 push{term.push[0], term.push[1], term.push[2]};
+  if (!(term.a.size > 0 && term.b.size > 0 && squared_norm(push) > 0)) return rub;
   rub.a = pair.a, rub.b = pair.b, rub.m = pair.m, rub.n = pair.n;
+  const Lanes wa = term.a.place / term.a.size, wb = term.b.place / term.b.size;
   for (std::size_t k = 0; k < 4; ++k) {
-    rub.law.weight_a[k] = fold.place_a[k] / fold.size_a;
-    rub.law.weight_b[k] = fold.place_b[k] / fold.size_b;
+    rub.law.weight_a[k] = wa[k];
+    rub.law.weight_b[k] = wb[k];
   }
   rub.law.normal = normalized(push);
   rub.law.load = model_.friction * norm(push);
@@ -242,22 +223,22 @@ Assembly::FrictionContact Assembly::add_friction(const SegmentPair& pair, const 
   rub.law.start = relative_place(rub, state);
   const Vec3 force = rub.law.force(rub.law.start);
   const Symmetric3 stiffness = rub.law.stiffness(rub.law.start);
-  const auto &wa = rub.law.weight_a, &wb = rub.law.weight_b;
-  for (std::size_t k = 0; k < 4; ++k) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      fold.gradient_a[k][c] += wa[k] * force[static_cast<int>(c)];
-      fold.gradient_b[k][c] -= wb[k] * force[static_cast<int>(c)];
+  for (std::size_t c = 0; c < 3; ++c) {
+    term.a.gradient[c] += force[static_cast<int>(c)] * wa;
+    term.b.gradient[c] -= force[static_cast<int>(c)] * wb;
+  }
+  for (std::size_t c = 0; c < 6; ++c) {
+    const Lanes by_a = stiffness[c] * wa, by_b = stiffness[c] * wb;
+    for (std::size_t k = 0; k < 4; ++k) {
+      term.a.hessian[k][c] += wa[k] * by_a;
+      term.b.hessian[k][c] += wb[k] * by_b;
+      term.between[k][c] -= wa[k] * by_b;
     }
-    for (std::size_t l = k; l < 4; ++l) {
-      add_scaled(wa[k] * wa[l], stiffness, fold.own_a[block_of_points[k][l]]);
-      add_scaled(wb[k] * wb[l], stiffness, fold.own_b[block_of_points[k][l]]);
-    }
-    for (std::size_t l = 0; l < 4; ++l) add_scaled(-wa[k] * wb[l], stiffness, fold.between[k][l]);
   }
   return rub;
 }
 
-void Assembly::scatter(const ContactFold& fold, const SegmentPair& pair, Chunk& chunk) const {
+void Assembly::scatter(const ContactTerm& term, const SegmentPair& pair, Chunk& chunk) const {
   const FourNodes na = nodes_of(pair.a), nb = nodes_of(pair.b);
   const auto fa = static_cast<std::size_t>(model_.first[static_cast<std::size_t>(pair.a)]),
              fb = static_cast<std::size_t>(model_.first[static_cast<std::size_t>(pair.b)]);
@@ -267,39 +248,32 @@ void Assembly::scatter(const ContactFold& fold, const SegmentPair& pair, Chunk& 
     frac_b[k] = {fraction_[fb + k][0] + pair.m, fraction_[fb + k][1] + pair.n};
   }
   const UpperBlocks upper(*chunk.matrix, diagonal_, chunk.low, chunk.high);
-  const auto add_symmetric_block = [](const auto& blocks) {
-    return [&blocks](std::size_t k, std::size_t l, Block& to, bool) {
-      add_symmetric(blocks[block_of_points[k][l]], to);
-    };
-  };
-  upper.each_own(na, add_symmetric_block(fold.own_a));
-  upper.each_own(nb, add_symmetric_block(fold.own_b));
+  upper.each_own(
+      na, [&](std::size_t k, std::size_t l, Block& to, bool) { add_symmetric(term.a.hessian[k], l, to); });
+  upper.each_own(
+      nb, [&](std::size_t k, std::size_t l, Block& to, bool) { add_symmetric(term.b.hessian[k], l, to); });
   upper.each_between(na, nb,
-                     [&](std::size_t k, std::size_t l, Block& to) { add_symmetric(fold.between[k][l], to); });
+                     [&](std::size_t k, std::size_t l, Block& to) { add_symmetric(term.between[k], l, to); });
 
+  ContactBorder columns;
+  border(term, frac_a, frac_b, columns);
   const bool whole = chunk.owns(na[0]);
-  const auto add_row = [&](std::int32_t node, const std::array<double, 3>& force, const Fraction& fraction,
-                           const Block& column) {
+  const auto add_row = [&](std::int32_t node, const std::array<Lanes, 3>& gradient, std::size_t k,
+                           const Fraction& fraction, const Block& column) {
+    const Vec3 force{gradient[0][k], gradient[1][k], gradient[2][k]};
     if (chunk.owns(node)) {
-      add(chunk.gradient->u[static_cast<std::size_t>(node)], force[0], force[1], force[2]);
+      chunk.gradient->u[static_cast<std::size_t>(node)] += force;
       add_to(chunk.matrix->border[static_cast<std::size_t>(node)], column);
     }
     if (!whole) return;
-    chunk.measures[0] += fraction[0] * force[0];
-    chunk.measures[1] += fraction[1] * force[1];
-    chunk.measures[2] += fraction[1] * force[0];
+    chunk.measures[0] += fraction[0] * force.x;
+    chunk.measures[1] += fraction[1] * force.y;
+    chunk.measures[2] += fraction[1] * force.x;
     add_measures_transposed(fraction, column, chunk.corner);
   };
   for (std::size_t k = 0; k < 4; ++k) {
-    Block column_a{}, column_b{};
-    for (std::size_t l = 0; l < 4; ++l) {
-      add_times_measures(fold.own_a[block_of_points[k][l]], frac_a[l], column_a);
-      add_times_measures(fold.between[k][l], frac_b[l], column_a);
-      add_times_measures(fold.own_b[block_of_points[k][l]], frac_b[l], column_b);
-      add_times_measures(fold.between[l][k], frac_a[l], column_b);
-    }
-    add_row(na[k], fold.gradient_a[k], frac_a[k], column_a);
-    add_row(nb[k], fold.gradient_b[k], frac_b[k], column_b);
+    add_row(na[k], term.a.gradient, k, frac_a[k], columns.a[k]);
+    add_row(nb[k], term.b.gradient, k, frac_b[k], columns.b[k]);
   }
 }
 

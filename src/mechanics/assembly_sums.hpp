@@ -1,6 +1,7 @@
 // The sums of an Assembly over the elements of one chunk of control points; for assembly*.cpp alone.
 #pragma once
 #include "mechanics/assembly.hpp"
+#include "mechanics/linear/upper_blocks.hpp"
 #include "mechanics/segment_lanes.hpp"
 
 namespace loopwright {
@@ -20,5 +21,10 @@ struct Assembly::Chunk {
 
   bool owns(std::int32_t node) const { return node >= low && node < high; }
 };
+
+inline FourNodes Assembly::nodes_of(int segment) const {
+  const auto f = static_cast<std::size_t>(model_.first[static_cast<std::size_t>(segment)]);
+  return {model_.base[f], model_.base[f + 1], model_.base[f + 2], model_.base[f + 3]};
+}
 
 }  // namespace loopwright

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 
 #include "base/parallel.hpp"
@@ -140,15 +139,14 @@ LOOPWRIGHT_WIDE std::size_t suspects(const StickBound& bound, const Vec3& place,
                                      std::uint8_t* found) {
   const double least2 = 9 * bound.halves * bound.halves, nearer = bound.halves + bent_away;
   std::size_t n = 0, j = 0;
-  const auto take = [](const double* p, Lanes& v) LOOPWRIGHT_INLINE_LAMBDA { std::memcpy(&v, p, sizeof v); };
   for (; j + lanes <= count; j += lanes) {
     Lanes x, y, z, tx, ty, tz;
-    take(from.x + j, x);
-    take(from.y + j, y);
-    take(from.z + j, z);
-    take(to.x + j, tx);
-    take(to.y + j, ty);
-    take(to.z + j, tz);
+    load(from.x + j, x);
+    load(from.y + j, y);
+    load(from.z + j, z);
+    load(to.x + j, tx);
+    load(to.y + j, ty);
+    load(to.z + j, tz);
     const Lanes dx = place.x - x, dy = place.y - y, dz = place.z - z;
     const Lanes rx = (moved.x - tx) - dx, ry = (moved.y - ty) - dy, rz = (moved.z - tz) - dz;
     const Lanes distance2 = dx * dx + dy * dy + dz * dz, motion2 = rx * rx + ry * ry + rz * rz;

@@ -27,7 +27,7 @@ std::vector<Vec3> sample_forces(const YarnModel& model, const YarnState& state) 
 
   const auto count = static_cast<std::size_t>(model.samples);
   std::vector<Vec3> forces(static_cast<std::size_t>(model.segments) * count);
-  ContactPairOutput out;
+  ContactTerm out;
   for (const SegmentPair& pair : pairs) {
     const YarnModel::Yarn &a = model.yarn_of(pair.a), &b = model.yarn_of(pair.b);
     const auto first_a = static_cast<std::size_t>(pair.a) * count,
@@ -44,12 +44,12 @@ std::vector<Vec3> sample_forces(const YarnModel& model, const YarnState& state) 
       in.spacing = a.rest_length / model.samples;
       in.excluded = model.excluded * a.diameter;
     }
-    contact_terms(in, model.contact.scaled(0.5 * (a.diameter + b.diameter)), model.weights, false, out);
+    evaluate(in, model.contact.scaled(0.5 * (a.diameter + b.diameter)), model.weights, out);
     if (!out.active) continue;
     for (std::size_t k = 0; k < count; ++k) {
-      const auto &ga = out.gradient_a[k], &gb = out.gradient_b[k];
-      forces[first_a + k] -= {ga[0], ga[1], ga[2]};
-      forces[first_b + k] -= {gb[0], gb[1], gb[2]};
+      const Lanes &on_a = out.a.sample[k][0], &on_b = out.b.sample[k][0];
+      forces[first_a + k] -= {on_a[0], on_a[1], on_a[2]};
+      forces[first_b + k] += {on_b[0], on_b[1], on_b[2]};
     }
     // the law is silent inside a core: say it
     if (std::isinf(out.energy))

@@ -15,17 +15,43 @@ struct ImagedSegment {
   SampleBox box;
 };
 
-SampleBox box_of(const SamplePlaces& places, std::size_t begin, std::size_t end) {
-  SampleBox box{{places.x[begin], places.y[begin], places.z[begin]},
-                {places.x[begin], places.y[begin], places.z[begin]}};
-  for (std::size_t k = begin + 1; k < end; ++k) {
-    const std::array<double, 3> p{places.x[k], places.y[k], places.z[k]};
-    for (std::size_t c = 0; c < 3; ++c) {
-      box.low[c] = std::min(box.low[c], p[c]);
-      box.high[c] = std::max(box.high[c], p[c]);
+// Samples of one segment with control points q, and the box round them. by_point: weights of all samples, by
+// control point.
+LOOPWRIGHT_WIDE void place_segment(const Vec3* q,
+                                   const std::array<std::array<double, most_contact_samples>, 4>& by_point,
+                                   std::size_t count, double* x, double* y, double* z, SampleBox& box) {
+  const std::array<double*, 3> places{x, y, z};
+  for (std::size_t c = 0; c < 3; ++c) {
+    const int d = static_cast<int>(c);
+    const std::array<double, 4> at{q[0][d], q[1][d], q[2][d], q[3][d]};
+    double* const to = places[c];
+    double low = 1e300, high = -1e300;
+    std::size_t k = 0;
+    if (count >= lanes) {
+      Lanes least = Lanes{} + low, most = Lanes{} + high;
+      for (; k + lanes <= count; k += lanes) {
+        Lanes w0, w1, w2, w3;
+        load(&by_point[0][k], w0);
+        load(&by_point[1][k], w1);
+        load(&by_point[2][k], w2);
+        load(&by_point[3][k], w3);
+        const Lanes v = w0 * at[0] + w1 * at[1] + w2 * at[2] + w3 * at[3];
+        std::memcpy(to + k, &v, sizeof v);
+        least = v < least ? v : least;
+        most = v > most ? v : most;
+      }
+      low = std::min(std::min(least[0], least[1]), std::min(least[2], least[3]));
+      high = std::max(std::max(most[0], most[1]), std::max(most[2], most[3]));
     }
+    for (; k < count; ++k) {
+      to[k] =
+          by_point[0][k] * at[0] + by_point[1][k] * at[1] + by_point[2][k] * at[2] + by_point[3][k] * at[3];
+      low = std::min(low, to[k]);
+      high = std::max(high, to[k]);
+    }
+    box.low[c] = low;
+    box.high[c] = high;
   }
-  return box;
 }
 
 bool apart(const SampleBox& a, const SampleBox& b, double range) {
@@ -48,9 +74,9 @@ LOOPWRIGHT_INLINE double least_squared_distance(const SamplePair& p, double beyo
   std::size_t j = 0;
   for (; j + lanes <= p.count; j += lanes) {
     Lanes x, y, z;
-    std::memcpy(&x, p.b.x + j, sizeof x);
-    std::memcpy(&y, p.b.y + j, sizeof y);
-    std::memcpy(&z, p.b.z + j, sizeof z);
+    load(p.b.x + j, x);
+    load(p.b.y + j, y);
+    load(p.b.z + j, z);
     x += p.image[0];
     y += p.image[1];
     z += p.image[2];
@@ -126,8 +152,8 @@ LOOPWRIGHT_WIDE std::size_t near_boxes(const SampleBox& box, const SortedBoxes& 
     Lanes d2{};
     for (std::size_t c = 0; c < 3; ++c) {
       Lanes low, high;
-      std::memcpy(&low, boxes.low[c].data() + k, sizeof low);
-      std::memcpy(&high, boxes.high[c].data() + k, sizeof high);
+      load(boxes.low[c].data() + k, low);
+      load(boxes.high[c].data() + k, high);
       const Lanes before = low - box.high[c], after = box.low[c] - high;
       Lanes gap = before > after ? before : after;
       gap = gap > 0.0 ? gap : Lanes{};
@@ -227,20 +253,14 @@ void place_samples(const YarnModel& model, const std::vector<Vec3>& extended, Sa
   places.x.resize(count);
   places.y.resize(count);
   places.z.resize(count);
-  places.boxes.clear();
-  places.boxes.reserve(static_cast<std::size_t>(model.segments));
-  std::size_t k = 0;
-  for (int e = 0; e < model.segments; ++e) {
-    const std::size_t begin = k;
-    const Vec3* q = extended.data() + model.first[static_cast<std::size_t>(e)];
-    for (std::size_t i = 0; i < static_cast<std::size_t>(model.samples); ++i, ++k) {
-      const auto& w = model.weights[i];
-      places.x[k] = w[0] * q[0].x + w[1] * q[1].x + w[2] * q[2].x + w[3] * q[3].x;
-      places.y[k] = w[0] * q[0].y + w[1] * q[1].y + w[2] * q[2].y + w[3] * q[3].y;
-      places.z[k] = w[0] * q[0].z + w[1] * q[1].z + w[2] * q[2].z + w[3] * q[3].z;
-    }
-    places.boxes.push_back(box_of(places, begin, k));
-  }
+  places.boxes.resize(static_cast<std::size_t>(model.segments));
+  const auto samples = static_cast<std::size_t>(model.samples);
+  std::array<std::array<double, most_contact_samples>, 4> by_point{};
+  for (std::size_t i = 0; i < samples; ++i)
+    for (std::size_t k = 0; k < 4; ++k) by_point[k][i] = model.weights[i][k];
+  for (std::size_t e = 0; e < places.boxes.size(); ++e)
+    place_segment(extended.data() + model.first[e], by_point, samples, &places.x[e * samples],
+                  &places.y[e * samples], &places.z[e * samples], places.boxes[e]);
 }
 
 void find_segment_pairs(const YarnModel& model, const YarnState& state, const SamplePlaces& places,

@@ -3,6 +3,8 @@
 #pragma once
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
 
 #include "base/wide.hpp"
 
@@ -11,9 +13,68 @@ namespace loopwright {
 using Lanes = double __attribute__((vector_size(32)));
 inline constexpr std::size_t lanes = sizeof(Lanes) / sizeof(double);
 
+LOOPWRIGHT_INLINE void load(const double* from, Lanes& to) { std::memcpy(&to, from, sizeof to); }
+
 inline void square_root(const double& x, double& root) { root = std::sqrt(x); }
 LOOPWRIGHT_INLINE void square_root(const Lanes& x, Lanes& root) {
   for (std::size_t l = 0; l < lanes; ++l) root[l] = std::sqrt(x[l]);
+}
+
+// Four lanes each, turned: what were lane k of a, b, c and d becomes the k-th.
+LOOPWRIGHT_INLINE void transpose(Lanes& a, Lanes& b, Lanes& c, Lanes& d) {
+  const Lanes ab_even = __builtin_shufflevector(a, b, 0, 4, 2, 6),
+              ab_odd = __builtin_shufflevector(a, b, 1, 5, 3, 7),
+              cd_even = __builtin_shufflevector(c, d, 0, 4, 2, 6),
+              cd_odd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  a = __builtin_shufflevector(ab_even, cd_even, 0, 1, 4, 5);
+  b = __builtin_shufflevector(ab_odd, cd_odd, 0, 1, 4, 5);
+  c = __builtin_shufflevector(ab_even, cd_even, 2, 3, 6, 7);
+  d = __builtin_shufflevector(ab_odd, cd_odd, 2, 3, 6, 7);
+}
+
+namespace lanes_detail {
+using Bits = std::uint64_t __attribute__((vector_size(32)));
+LOOPWRIGHT_INLINE void bits_of(const Lanes& x, Bits& bits) { std::memcpy(&bits, &x, sizeof bits); }
+LOOPWRIGHT_INLINE void from_bits(const Bits& bits, Lanes& x) { std::memcpy(&x, &bits, sizeof x); }
+inline constexpr double ln2_high = 0x1.62e42fefa0000p-1, ln2_low = 0x1.cf79abc9e3b3ap-40;
+}  // namespace lanes_detail
+
+// Natural logarithm of positive normal numbers, within some units of the last place. x = 2^k m with m round
+// 1, log m = 2 artanh((m - 1) / (m + 1)) by its series.
+LOOPWRIGHT_INLINE void logarithm(const Lanes& x, Lanes& result) {
+  using namespace lanes_detail;
+  constexpr std::uint64_t root_half = 0x3fe6a09e667f3bcd, bias = 1024;
+  Bits bits;
+  bits_of(x, bits);
+  const Bits exponent = (bits - root_half + (bias << 52)) >> 52;
+  Lanes k, m;
+  from_bits(exponent | 0x4330000000000000, k);  // 2^52 + exponent
+  k -= 0x1p52 + static_cast<double>(bias);
+  from_bits(bits - ((exponent - bias) << 52), m);
+  const Lanes s = (m - 1.0) / (m + 1.0), z = s * s;
+  Lanes series = Lanes{} + 1.0 / 23;
+  for (int n = 21; n >= 3; n -= 2) series = series * z + 1.0 / n;
+  result = k * ln2_high + (2.0 * s + (2.0 * s * z * series + k * ln2_low));
+}
+
+// e^x for |x| up to 700 (what is beyond is taken for that), within some units of the last place.
+LOOPWRIGHT_INLINE void exponential(const Lanes& power, Lanes& result) {
+  using namespace lanes_detail;
+  constexpr double round_to_integer = 0x1.8p52, most = 700;
+  Lanes x = power > most ? Lanes{} + most : power;
+  x = x < -most ? Lanes{} - most : x;
+  const Lanes rounded = x * 1.4426950408889634 + round_to_integer, n = rounded - round_to_integer;
+  const Lanes r = (x - n * ln2_high) - n * ln2_low;
+  Lanes series = Lanes{} + 1.0 / 6227020800.0;  // 1 / 13!
+  double factorial = 6227020800.0;
+  for (int k = 13; k >= 1; --k) {
+    factorial /= k;
+    series = series * r + 1.0 / factorial;
+  }
+  Bits two_to_n, value;
+  bits_of(rounded, two_to_n);
+  bits_of(series, value);
+  from_bits(value + (two_to_n << 52), result);
 }
 
 }  // namespace loopwright

@@ -14,6 +14,8 @@
 #include <cmath>
 #include <limits>
 
+#include "mechanics/energies/lanes.hpp"
+
 namespace loopwright {
 
 struct ContactLaw {
@@ -37,6 +39,20 @@ struct ContactLaw {
     v.slope = -stiffness * W / p * (y_p - 1);
     v.curvature = stiffness * y_p / y;
     return v;
+  }
+
+  // The same for several distances at once.
+  LOOPWRIGHT_INLINE void evaluate(const Lanes& D, Lanes& energy, Lanes& slope, Lanes& curvature) const {
+    const double W = outer - core, p = exponent;
+    const Lanes y = (D - core) / W, one = Lanes{} + 1.0, sound = y > 0.0 ? y : one;
+    Lanes log_y, y_p;
+    logarithm(sound, log_y);
+    exponential(-p * log_y, y_p);
+    const auto inside = y <= 0.0;
+    energy = inside ? Lanes{} + std::numeric_limits<double>::infinity()
+                    : stiffness * W * W / (p * (p - 1)) * (y_p * y - 1.0 + (1 - p) * (1.0 - y));
+    slope = inside ? Lanes{} : -stiffness * W / p * (y_p - 1.0);
+    curvature = inside ? Lanes{} : stiffness * y_p / sound;
   }
 
   // The same law for yarns whose mean diameter is `scale` times the reference.

@@ -13,7 +13,8 @@
 
 namespace loopwright {
 
-using Block = std::array<double, 9>;  // row-major 3 x 3
+using Block = std::array<double, 9>;            // row-major 3 x 3
+using FourNodes = std::array<std::int32_t, 4>;  // control points of a segment
 
 struct BlockMatrix {
   std::vector<std::int32_t> row_start;  // [rows + 1]

@@ -9,8 +9,6 @@
 
 namespace loopwright {
 
-using FourNodes = std::array<std::int32_t, 4>;
-
 class UpperBlocks {
  public:
   // `diagonal`: places of the diagonal blocks.
@@ -27,6 +25,13 @@ class UpperBlocks {
   template <class Add>
   void each_own(const FourNodes& n, const Add& add) const {
     const bool run = is_run(n);
+    if (run && owns(n[0]) && owns(n[3])) {
+      for (std::size_t k = 0; k < 4; ++k) {
+        Block* const on = &matrix_.block[on_diagonal(n[k])];
+        for (std::size_t l = k; l < 4; ++l) add(k, l, on[l - k], false);
+      }
+      return;
+    }
     for (std::size_t k = 0; k < 4; ++k)
       for (std::size_t l = k; l < 4; ++l) {
         const bool turned = n[k] > n[l];

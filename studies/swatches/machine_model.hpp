@@ -11,17 +11,17 @@ struct MachineModel {
   // Yarn in a loop: what the stitch cam draws, and what it takes to go from one bed to the other (half of it
   // at either end of a loop). A loop that is moved has no more yarn than others, a loop on an empty needle no
   // less.
-  double loop_length_mm = 6.57, bed_change_mm = 1.48;
+  double loop_length_mm = 6.53, bed_change_mm = 1.39;
   double take_down_N = 0.02;  // of a wale
   // Laid flat: room for the centrelines of jersey (one layer of stitches, and a diameter for yarn that
   // crosses it) and of cloth whose stitches show both faces.
-  double one_layer_mm = 1.0, two_layers_mm = 1.72;
+  double one_layer_mm = 1.0, two_layers_mm = 1.70;
   double hand_pull_N_m = 10;  // cloth is pulled straight both ways before it is laid: 100 g on a width of 10 cm
   // Yarn. Its hairs touch at `diameter_mm`; pressed together it is as thick as `core_diameter_mm`, fibres packed
   // to 0.8; in between it is pressed as acrylic yarn is (Singal et al., Nature Communications 15, 2622 (2024)):
   // shell_kW_N_mm2 / p (y^-p - 1), y the share of the shell that is left.
-  double diameter_mm = 0.45, core_diameter_mm = 0.31, shell_kW_N_mm2 = 1.007e-2, shell_exponent = 2.4;
-  double bend_stiffness_mN_mm2 = 12.7, friction = 0.25, linear_density_tex = 72.15;
+  double diameter_mm = 0.80, core_diameter_mm = 0.31, shell_kW_N_mm2 = 4.98e-4, shell_exponent = 2.4;
+  double bend_stiffness_mN_mm2 = 12.7, friction = 0.25, linear_density_tex = 73.0;
   double set = 0.5;  // of the curvature that it has on the needles: what bent acrylic yarn loses in time
   // Of the stretched swatches, 608 g: along the courses, borne by all of them, and along the wales.
   double course_load_N = 5.96, wale_load_N = 0;

@@ -51,6 +51,8 @@ bool Assembly::touches(const Chunk& chunk, int segment) const {
 void Assembly::gather(const std::int32_t* segments, std::size_t count, bool fractions,
                       SegmentLanes& to) const {
   to.set = !model_.natural_curvature.empty();
+  to.stretch.evenness = Stretch{}.evenness;
+  to.bend.natural = nullptr;
   for (std::size_t lane = 0; lane < lanes; ++lane) {
     const auto e = static_cast<std::size_t>(segments[std::min(lane, count - 1)]);
     const auto f = static_cast<std::size_t>(model_.first[e]);

@@ -62,6 +62,7 @@ void check_segments(bool set, Generator& random) {
   std::array<SegmentDofs, lanes> x;
   std::array<std::array<double, 4>, lanes> natural{};
   in.set = set;
+  in.stretch.evenness = Stretch{}.evenness;
   for (std::size_t lane = 0; lane < lanes; ++lane) {
     x[lane] = segment(random);
     for (std::size_t k = 0; k < 4; ++k) {

@@ -130,7 +130,7 @@ def manual_faults():
         if name != "README.md" and name not in listed:
             yield f"docs/README.md does not list {name}"
     for energy in sorted((ROOT / "src/mechanics/energies").glob("*.hpp")):
-        if energy.stem not in ("all", "energy") and not (ROOT / f"docs/energies/{energy.stem}.md").exists():
+        if energy.stem not in ("all", "energy", "lanes", "segment_term") and not (ROOT / f"docs/energies/{energy.stem}.md").exists():
             yield f"{energy.relative_to(ROOT)} has no page docs/energies/{energy.stem}.md"
 
 

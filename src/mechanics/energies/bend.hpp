@@ -12,13 +12,11 @@
 
 namespace loopwright {
 
+// For one segment or several.
 template <class Real>
 struct BendOf {
-  static constexpr const char* name = "bend";
-  static constexpr std::size_t dofs = 12;
-  Real stiffness = Real{} + 1.0;                 // B
-  Real rest_length = Real{} + 1.0;               // h
-  const std::array<Real, 4>* natural = nullptr;  // kappa_0 at the Gauss points, 1/d; none: straight
+  Real stiffness, rest_length;         // B, h
+  const std::array<Real, 4>* natural;  // kappa_0 at the Gauss points, 1/d; none: straight
 
   // (r - r_0)^2 as a function of f = kappa^2, and its first two derivatives; f itself where kappa_0 is 0.
   struct Law {
@@ -84,23 +82,26 @@ struct BendOf {
       p.CC += w3;
     }
   }
+};
 
-  // By itself, for one segment.
+// For one segment.
+struct Bend {
+  static constexpr const char* name = "bend";
+  static constexpr std::size_t dofs = 12;
+  double stiffness = 1;                            // B
+  double rest_length = 1;                          // h
+  const std::array<double, 4>* natural = nullptr;  // kappa_0 at the Gauss points, 1/d; none: straight
+
   double energy(const SegmentDofs& x) const {
     double sum = 0;
-    add_energy(gauss_points(x), sum);
+    BendOf<double>{stiffness, rest_length, natural}.add_energy(gauss_points(x), sum);
     return sum;
   }
   LocalTerm<12> evaluate(const SegmentDofs& x) const {
-    const GaussPoints<double> points = gauss_points(x);
-    std::array<PointLaw<double>, 4> law{};
-    SegmentTerm<double> term;
-    add(points, law, term.energy);
-    for (std::size_t g = 0; g < 4; ++g) term.template add_point<true>(points, g, law[g]);
-    return local_term(term);
+    return element_term(x, [this](const auto& points, auto& law, auto& term) {
+      BendOf<double>{stiffness, rest_length, natural}.add(points, law, term.energy);
+    });
   }
 };
-
-using Bend = BendOf<double>;
 
 }  // namespace loopwright

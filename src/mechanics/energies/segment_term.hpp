@@ -233,4 +233,15 @@ inline LocalTerm<12> local_term(const SegmentTerm<double>& term) {
   return local;
 }
 
+// One segment by itself. add(points, laws, term): as StretchOf and BendOf have it.
+template <class Add>
+LocalTerm<12> element_term(const SegmentDofs& x, const Add& add) {
+  const GaussPoints<double> points = gauss_points(x);
+  std::array<PointLaw<double>, 4> law{};
+  SegmentTerm<double> term;
+  add(points, law, term);
+  for (std::size_t g = 0; g < 4; ++g) term.template add_point<true>(points, g, law[g]);
+  return local_term(term);
+}
+
 }  // namespace loopwright

@@ -13,13 +13,11 @@
 
 namespace loopwright {
 
+// For one segment or several.
 template <class Real>
 struct StretchOf {
-  static constexpr const char* name = "stretch";
-  static constexpr std::size_t dofs = 12;
-  Real stiffness = Real{} + 1.0;    // EA
-  Real rest_length = Real{} + 1.0;  // h
-  double evenness = 0.005;
+  Real stiffness, rest_length;  // EA, h
+  double evenness;
 
   // Length of the segment, speeds at the Gauss points and their variance (the mean of the squares less the
   // square of the mean, as a sum of squares: the difference would be lost in rounding).
@@ -72,23 +70,26 @@ struct StretchOf {
     }
     term.add_dyad(hardness, arc_slope);
   }
+};
 
-  // By itself, for one segment.
+// For one segment.
+struct Stretch {
+  static constexpr const char* name = "stretch";
+  static constexpr std::size_t dofs = 12;
+  double stiffness = 1;    // EA
+  double rest_length = 1;  // h
+  double evenness = 0.005;
+
   double energy(const SegmentDofs& x) const {
     double sum = 0;
-    add_energy(gauss_points(x), sum);
+    StretchOf<double>{stiffness, rest_length, evenness}.add_energy(gauss_points(x), sum);
     return sum;
   }
   LocalTerm<12> evaluate(const SegmentDofs& x) const {
-    const GaussPoints<double> points = gauss_points(x);
-    std::array<PointLaw<double>, 4> law{};
-    SegmentTerm<double> term;
-    add(points, law, term);
-    for (std::size_t g = 0; g < 4; ++g) term.template add_point<false>(points, g, law[g]);
-    return local_term(term);
+    return element_term(x, [this](const auto& points, auto& law, auto& term) {
+      StretchOf<double>{stiffness, rest_length, evenness}.add(points, law, term);
+    });
   }
 };
-
-using Stretch = StretchOf<double>;
 
 }  // namespace loopwright

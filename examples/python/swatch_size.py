@@ -19,10 +19,11 @@ arguments, _ = parser.parse_known_args()
 
 structures = (Path(__file__).parents[1] if "__file__" in globals() else Path("examples")) / "structures"
 GAUGE, TAKE_DOWN_N = 15, 0.02  # needles per inch; pull on a wale while it is on the needles
-MACHINE = dict(gauge_npi=GAUGE, loop_length_mm=6.83, bed_change_mm=1.40)
-YARN = "diameter=0.405mm linear-density=70tex bend-stiffness=12.7mNmm2 friction=0.25"
+MACHINE = dict(gauge_npi=GAUGE, loop_length_mm=6.53, bed_change_mm=1.39)
+YARN = ("diameter=0.8mm core-diameter=0.31mm shell-stiffness=0.001016N/mm3 shell-exponent=2.4 linear-density=73tex "
+        "bend-stiffness=12.7mNmm2 friction=0.25")
 MEASURED = {"plain": (99, 84), "rib": (71, 103), "garter": (111, 64)}  # mm
-FLAT_GAP_MM = {"plain": 1.0, "rib": 1.9, "garter": 1.9}  # one layer of stitches, or two faces
+FLAT_GAP_MM = {"plain": 1.0, "rib": 1.7, "garter": 1.7}  # one layer of stitches, or two faces
 
 
 # %%

@@ -205,7 +205,7 @@ int collect(const std::filesystem::path& folder, const std::filesystem::path& ro
 }
 
 // How far a prediction moves with what is not known well: friction from none to no slip, take-down by a
-// factor of three, diameter by a twentieth, yarn in a loop by a fiftieth.
+// factor of three, diameters by a twentieth, yarn in a loop by a fiftieth.
 struct Variant {
   const char* name;
   MachineModel machine;
@@ -225,8 +225,10 @@ std::vector<Variant> variants() {
   with("no_slip", &MachineModel::friction, 5);
   with("take_down_third", &MachineModel::take_down_N, usual.take_down_N / 3);
   with("take_down_thrice", &MachineModel::take_down_N, usual.take_down_N * 3);
-  with("thinner_yarn", &MachineModel::diameter_mm, usual.diameter_mm * 0.95);
-  with("thicker_yarn", &MachineModel::diameter_mm, usual.diameter_mm * 1.05);
+  for (const auto& [name, share] : {std::pair{"thinner_yarn", 0.95}, std::pair{"thicker_yarn", 1.05}}) {
+    with(name, &MachineModel::diameter_mm, usual.diameter_mm * share);
+    all.back().machine.core_diameter_mm *= share;
+  }
   with("shorter_loops", &MachineModel::loop_length_mm, usual.loop_length_mm * 0.98);
   with("longer_loops", &MachineModel::loop_length_mm, usual.loop_length_mm * 1.02);
   return all;

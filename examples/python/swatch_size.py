@@ -19,7 +19,8 @@ arguments, _ = parser.parse_known_args()
 
 structures = (Path(__file__).parents[1] if "__file__" in globals() else Path("examples")) / "structures"
 GAUGE, TAKE_DOWN_N = 15, 0.02  # needles per inch; pull on a wale while it is on the needles
-MACHINE = dict(gauge_npi=GAUGE, loop_length_mm=6.53, bed_change_mm=1.39)
+HAND_PULL_N_M = 10  # cloth is pulled straight before it is laid
+MACHINE = dict(gauge_npi=GAUGE, loop_length_mm=6.53, bed_change_mm=1.39, set=0.5)
 YARN = ("diameter=0.8mm core-diameter=0.31mm shell-stiffness=0.001016N/mm3 shell-exponent=2.4 linear-density=73tex "
         "bend-stiffness=12.7mNmm2 friction=0.25")
 MEASURED = {"plain": (99, 84), "rib": (71, 103), "garter": (111, 64)}  # mm
@@ -29,12 +30,13 @@ FLAT_GAP_MM = {"plain": 1.0, "rib": 1.7, "garter": 1.7}  # one layer of stitches
 # %%
 def predicted(structure: str, friction: float | None = None, **machine: float) -> tuple[float, float]:
     """Width and height in mm: a cell goes through what the swatch went through, on the needles under take-down, then let
-    go and laid flat; then it is counted up."""
+    go, pulled straight and laid flat; then it is counted up."""
     program = loopwright.read(structures / f"{structure}.verm", yarn=YARN, **{**MACHINE, **machine})
     first = program.build(periodic=True, friction=friction)
     wales = first.measure()["wales"]
     cell = loopwright.relax_as_knitted(first, machine_width_mm=wales * 25.4 / GAUGE, take_down_N=wales * TAKE_DOWN_N,
-                                       flat_gap_mm=FLAT_GAP_MM[structure], tolerance=1e-3)
+                                       flat_gap_mm=FLAT_GAP_MM[structure], hand_pull_N_m=HAND_PULL_N_M,
+                                       tolerance=1e-3)
     if not cell.whole:
         raise RuntimeError(f"{structure}: interlacings {cell.interlacings_kept}")
     sizes = cell.measure()

@@ -182,7 +182,7 @@ py::dict sensitivity_of(const Cloth& cloth, const std::map<std::string, double>&
 }
 
 ClothPointer relax_as_knitted_cloth(const Cloth& cloth, double machine_width_mm, double take_down_N,
-                                    double flat_gap_mm, std::optional<double> tolerance,
+                                    double flat_gap_mm, double hand_pull_N_m, std::optional<double> tolerance,
                                     py::object progress) {
   Watch watch(std::move(progress));
   ClothPointer relaxed = without_gil([&] {
@@ -192,8 +192,8 @@ ClothPointer relax_as_knitted_cloth(const Cloth& cloth, double machine_width_mm,
     run.options.on_progress = [&watch](const RelaxProgress& now) {
       return watch.goes_on(now.phase, 0.5 * now.radius, now.newton_iterations, now.residual);
     };
-    KnittedRest rest =
-        relax_as_knitted(cloth.fabric(), run.options, {machine_width_mm, take_down_N, flat_gap_mm});
+    KnittedRest rest = relax_as_knitted(cloth.fabric(), run.options,
+                                        {machine_width_mm, take_down_N, flat_gap_mm, hand_pull_N_m});
     run.options.on_progress = {};
     run.options.tolerance = cloth.piece().options.tolerance;
     run.result = std::move(rest.relaxed);
@@ -253,14 +253,17 @@ void bind_experiments(py::module_& module) {
       "direction: 'course', 'wale', 'both' or 'shear'; to: strains to go to, in order; load: forces "
       "instead,\n"
       "N/m; step, load_step: the largest steps; held_across: the other size stays as it is.");
-  cloth.def("relax_as_knitted", &relax_as_knitted_cloth, py::kw_only(), py::arg("machine_width_mm"),
-            py::arg("take_down_N") = 0.0, py::arg("flat_gap_mm") = 0.0, py::arg("tolerance") = py::none(),
-            py::arg("progress") = py::none(),
-            "From a first geometry to rest by the way that cloth goes: on the needles, machine_width_mm wide "
-            "under\n"
-            "a pull of take_down_N along its wales, then let go; flat_gap_mm: kept flat all the while, the "
-            "outermost\n"
-            "centrelines so far apart (0: not at all).");
+  cloth.def(
+      "relax_as_knitted", &relax_as_knitted_cloth, py::kw_only(), py::arg("machine_width_mm"),
+      py::arg("take_down_N") = 0.0, py::arg("flat_gap_mm") = 0.0, py::arg("hand_pull_N_m") = 0.0,
+      py::arg("tolerance") = py::none(), py::arg("progress") = py::none(),
+      "From a first geometry to rest by the way that cloth goes: on the needles, machine_width_mm wide "
+      "under\n"
+      "a pull of take_down_N along its wales, then let go; flat_gap_mm: kept flat all the while, the "
+      "outermost\n"
+      "centrelines so far apart (0: not at all); hand_pull_N_m: then pulled straight both ways at once, and "
+      "let\n"
+      "go again.");
   cloth.def(
       "sensitivity", &sensitivity_of, py::kw_only(), py::arg("deviations") = std::map<std::string, double>{},
       py::arg("progress") = py::none(),

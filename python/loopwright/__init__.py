@@ -160,14 +160,17 @@ def relax(source: Source, *, periodic: bool = False, window: Window | None = Non
 
 
 def relax_as_knitted(first: Cloth, *, machine_width_mm: float, take_down_N: float = 0.0, flat_gap_mm: float = 0.0,
-                     tolerance: float | None = None, progress: OnProgress | None = None) -> Cloth:
+                     hand_pull_N_m: float = 0.0, tolerance: float | None = None,
+                     progress: OnProgress | None = None) -> Cloth:
     """Brings a first geometry to rest by the way that cloth goes: with friction its size depends on it.
 
     At rest on the needles first, machine_width_mm wide under a pull of take_down_N along its wales; then let go, friction
     keeping its history. flat_gap_mm: kept flat all the while, the outermost centrelines so far apart; 0: not at all.
+    hand_pull_N_m: then pulled straight both ways at once, and let go again. Set yarn (`read(..., set=0.5)`) is set on the
+    needles.
     """
     return first.relax_as_knitted(machine_width_mm=machine_width_mm, take_down_N=take_down_N, flat_gap_mm=flat_gap_mm,
-                                  tolerance=tolerance, progress=progress)
+                                  hand_pull_N_m=hand_pull_N_m, tolerance=tolerance, progress=progress)
 
 
 def stretch(source: Source, *, direction: str = "course", to: Sequence[float] = (0.3,),

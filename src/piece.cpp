@@ -60,9 +60,7 @@ void let_go_of(RelaxRun& run, const ShareProgress& on_progress) {
   run.options.model.plates = {};
   run.options.history = between.history;
   relax_watched(between.fabric, on_progress, run);
-  run.result.newton_iterations += between.newton_iterations;
-  run.result.linear_iterations += between.linear_iterations;
-  run.result.pass_throughs += between.pass_throughs;
+  add_counts(run.result, between);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "mechanics/contact/pair_input.hpp"
 #include "mechanics/energies/plates.hpp"
 
 namespace loopwright {
@@ -88,20 +89,14 @@ void Assembly::add_segments(Chunk& chunk) const {
       energies(in, term.stretch, term.bend);
     for (std::size_t lane = 0; lane < count; ++lane) {
       if (chunk.matrix) scatter(term, lane, group[lane], chunk);
-      if (!chunk.owns(
-              model_.base[static_cast<std::size_t>(model_.first[static_cast<std::size_t>(group[lane])])]))
-        continue;
+      if (!chunk.owns(nodes_of(group[lane])[0])) continue;
       chunk.energy.stretch += term.stretch[lane];
       chunk.energy.bend += term.bend[lane];
     }
     count = 0;
   };
   for (int e = 0; e < model_.segments; ++e) {
-    const bool wanted =
-        chunk.matrix
-            ? touches(chunk, e)
-            : chunk.owns(model_.base[static_cast<std::size_t>(model_.first[static_cast<std::size_t>(e)])]);
-    if (!wanted) continue;
+    if (!(chunk.matrix ? touches(chunk, e) : chunk.owns(nodes_of(e)[0]))) continue;
     group[count++] = e;
     if (count == lanes) flush();
     if (model_.plates.stiffness > 0) add_plates(e, chunk);
@@ -158,34 +153,17 @@ bool Assembly::contact_input(const SegmentPair& pair, const Vec3& image, double 
   const SampleBox &box_a = places_.boxes[static_cast<std::size_t>(pair.a)],
                   &box_b = places_.boxes[static_cast<std::size_t>(pair.b)];
   if (squared_distance(box_a, {image.x, image.y, image.z}, box_b) >= reach * reach) return false;
-  const std::size_t a0 = static_cast<std::size_t>(pair.a * model_.samples),
-                    b0 = static_cast<std::size_t>(pair.b * model_.samples);
-  const YarnModel::Yarn &ya = model_.yarn_of(pair.a), &yb = model_.yarn_of(pair.b);
-  in.a = {&places_.x[a0], &places_.y[a0], &places_.z[a0]};
-  in.b = {&places_.x[b0], &places_.y[b0], &places_.z[b0]};
-  in.image = {image.x, image.y, image.z};
-  in.box_b = &box_b;
-  in.count = model_.samples;
-  in.weight = ya.rest_length * yb.rest_length / (model_.samples * model_.samples);
-  in.arc_offset = in.spacing = in.excluded = 0;
-  if (pair.same_yarn) {
-    in.arc_offset = pair.arc_offset;
-    in.spacing = ya.rest_length / model_.samples;
-    in.excluded = model_.excluded * ya.diameter;
-  }
+  in = pair_input(model_, places_, pair, image);
   return true;
 }
 
 void Assembly::add_contacts(Chunk& chunk) {
   ContactPairInput in;
   ContactTerm term;
-  const auto owns_first = [&](int segment) {
-    return chunk.owns(model_.base[static_cast<std::size_t>(model_.first[static_cast<std::size_t>(segment)])]);
-  };
   const std::size_t candidates = chunk.matrix ? active_.size() : pairs_.size();
   for (std::size_t k = 0; k < candidates; ++k) {
     const SegmentPair& pair = pairs_[chunk.matrix ? static_cast<std::size_t>(active_[k]) : k];
-    const bool whole = owns_first(pair.a);
+    const bool whole = chunk.owns(nodes_of(pair.a)[0]);
     if (!whole && !(chunk.matrix && (touches(chunk, pair.a) || touches(chunk, pair.b)))) continue;
     const double scale = law_scale(pair.a, pair.b);
     if (!contact_input(pair, chunk.state->lattice(pair.m, pair.n), model_.contact.outer * scale, in))

@@ -24,8 +24,7 @@ constexpr double least_growing_stiffness = 100;
 // W^(1+p) / (D - Dc)^p, which tells the width of a shell of the least growing stiffness that presses as hard.
 Growing thin_yarn(const ContactLaw& law) {
   const double width = law.outer - law.core,
-               narrow = width * std::pow(std::min(1.0, law.stiffness / least_growing_stiffness),
-                                         1 / (1 + law.exponent)),
+               narrow = width * std::pow(law.stiffness / least_growing_stiffness, 1 / (1 + law.exponent)),
                diameter = (law.core + narrow) / law.outer;
   return {{diameter * law.outer, 0.5 * diameter * law.outer, least_growing_stiffness / std::pow(diameter, 5),
            law.exponent}};
@@ -52,14 +51,12 @@ std::vector<double> drawn_lengths(const Fabric& fabric) {
   return lengths;
 }
 
-enum class Core { whole, stalled, stopped, touching };
-
 // The yarn's hard core grows as room is made, its soft shell is there from the start. It keeps the lengths
 // that it was drawn with until the core is whole, and then goes to its own in small steps: loops drawn too
 // long or too short would drag yarn through whole courses before it can hold itself. `own_length`: 0 to
-// begin with the lengths as drawn, 1 with those of the yarn.
-Core grow_core(const Fabric& fabric, const ModelOptions& options, const YarnModel& full, YarnState& state,
-               const GrowingRun& run, const Growing& growing, double own_length) {
+// begin with the lengths as drawn, 1 with those of the yarn. Jammed here: it stalled.
+GrownIn grow_core(const Fabric& fabric, const ModelOptions& options, const YarnModel& full, YarnState& state,
+                  const GrowingRun& run, const Growing& growing, double own_length) {
   const std::vector<double> drawn = drawn_lengths(fabric);
   double most_strain = 0;
   for (std::size_t e = 0; e < drawn.size(); ++e)
@@ -78,22 +75,22 @@ Core grow_core(const Fabric& fabric, const ModelOptions& options, const YarnMode
   double core_before = -std::numeric_limits<double>::infinity();
   while (true) {
     const double nearest = smallest_clearance(full, state, 1.5);
-    if (!(nearest > 1e-4)) return Core::touching;
+    if (!(nearest > 1e-4)) return GrownIn::touching;
     // The core for which the nearest pieces of yarn still have `left` of the shell between them; below zero
     // where they nearly touch: then the law is finite everywhere, and only the safe step parts the yarns.
     const double core_now = std::min(core, (nearest - left * outer) / (1 - left));
     // A knot drawn too tight opens only with more yarn.
     if (core_now == core || core_now < core_before + enough_growth) own_length += length_step;
-    if (core_now == core && own_length >= 1) return Core::whole;
+    if (core_now == core && own_length >= 1) return GrownIn::yes;
     // Yarn pressed nearer than the growing law wishes, at its own length: the true law may take over.
     if (core_now > core_before + any_growth) stalls = 0;
-    if (own_length >= 1 && ++stalls > most_stalls) return Core::stalled;
+    if (own_length >= 1 && ++stalls > most_stalls) return GrownIn::jammed;
     core_before = core_now;
     const double share = std::clamp(nearest / (core + left * (outer - core)), 0.0, 0.999);
     if (!run(drawn_in(build_yarn_model(fabric, with_law(options, growing.whole, core_now)),
                       std::min(own_length, 1.0)),
              share, growing.tolerance, 12))
-      return Core::stopped;
+      return GrownIn::stopped;
   }
 }
 
@@ -105,26 +102,16 @@ GrownIn grow_in(const Fabric& fabric, const ModelOptions& options, const YarnMod
   const auto grown = [&](const Growing& growing, double own_length) {
     return grow_core(fabric, options, full, state, run, growing, own_length);
   };
+  const bool soft = law.stiffness < least_growing_stiffness;
+  GrownIn outcome = grown(soft ? thin_yarn(law) : Growing{law}, 0);
+  if (soft && (outcome == GrownIn::yes || outcome == GrownIn::jammed)) outcome = grown(soft_law(law), 1);
   // Soft yarn in tight loops is pressed nearer than a growing law wishes; the true law takes over if no core
   // is in another.
-  const auto has_room = [&](double share) {
-    return smallest_clearance(full, state, 1.5) > law.core + share * (law.outer - law.core);
-  };
-  const bool soft = law.stiffness < least_growing_stiffness;
-  Core core = grown(soft ? thin_yarn(law) : Growing{law}, 0);
-  if (soft && (core == Core::whole || core == Core::stalled)) core = grown(soft_law(law), 1);
   const double least_room = soft ? 0.001 : 0.02;
-  switch (core) {
-    case Core::stopped:
-      return GrownIn::stopped;
-    case Core::touching:
-      return GrownIn::touching;
-    case Core::stalled:
-      return has_room(least_room) ? GrownIn::yes : GrownIn::jammed;
-    case Core::whole:
-      break;
-  }
-  return GrownIn::yes;
+  if (outcome == GrownIn::jammed &&
+      smallest_clearance(full, state, 1.5) > law.core + least_room * (law.outer - law.core))
+    outcome = GrownIn::yes;
+  return outcome;
 }
 
 }  // namespace loopwright

@@ -6,15 +6,6 @@ namespace {
 // Fractional coordinates as the control points' own are taken to the middle: v, a, j.
 using MiddleFractions = std::array<std::array<Lanes, 2>, 3>;
 
-LOOPWRIGHT_INLINE void middle_fractions(const std::array<std::array<Lanes, 2>, 4>& at, MiddleFractions& m) {
-  for (std::size_t c = 0; c < 2; ++c) {
-    const Lanes inner = at[2][c] - at[1][c], outer = at[3][c] - at[0][c];
-    m[0][c] = 0.625 * inner + 0.125 * outer;
-    m[1][c] = 0.5 * ((at[0][c] - at[1][c]) + (at[3][c] - at[2][c]));
-    m[2][c] = outer - 3.0 * inner;
-  }
-}
-
 // Border and corner from the Hessian by v, a and j: blocks times M of these, then M' times that.
 LOOPWRIGHT_INLINE void add_measures(const SegmentTerm<Lanes>& term, const MiddleFractions& f,
                                     SegmentLanesTerm& out) {
@@ -72,7 +63,7 @@ LOOPWRIGHT_WIDE void evaluate(const SegmentLanes& s, SegmentLanesTerm& out) {
   spread_gradient(term.gradient, out.gradient);
   spread_hessian(term, out.blocks);
   MiddleFractions fractions;
-  middle_fractions(s.fractions, fractions);
+  middle_of(s.fractions, fractions);
   add_measures(term, fractions, out);
 }
 

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "mechanics/contact/segment_pairs.hpp"
-#include "mechanics/energies/contact.hpp"
+#include "mechanics/contact/pair_input.hpp"
 
 namespace loopwright {
 namespace {
@@ -32,18 +31,7 @@ std::vector<Vec3> sample_forces(const YarnModel& model, const YarnState& state) 
     const YarnModel::Yarn &a = model.yarn_of(pair.a), &b = model.yarn_of(pair.b);
     const auto first_a = static_cast<std::size_t>(pair.a) * count,
                first_b = static_cast<std::size_t>(pair.b) * count;
-    const auto from = [&](std::size_t first) {
-      return SampleView{&places.x[first], &places.y[first], &places.z[first]};
-    };
-    const Vec3 image = state.lattice(pair.m, pair.n);
-    ContactPairInput in{from(first_a), from(first_b), {image.x, image.y, image.z}};
-    in.count = model.samples;
-    in.weight = a.rest_length / model.samples * b.rest_length / model.samples;
-    if (pair.same_yarn) {
-      in.arc_offset = pair.arc_offset;
-      in.spacing = a.rest_length / model.samples;
-      in.excluded = model.excluded * a.diameter;
-    }
+    const ContactPairInput in = pair_input(model, places, pair, state.lattice(pair.m, pair.n));
     evaluate(in, model.contact.scaled(0.5 * (a.diameter + b.diameter)), model.weights, out);
     if (!out.active) continue;
     for (std::size_t k = 0; k < count; ++k) {

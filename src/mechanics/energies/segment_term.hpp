@@ -22,9 +22,11 @@ namespace loopwright {
 template <class Real>
 using Middle = std::array<std::array<Real, 3>, 3>;
 
-template <class Real>
-LOOPWRIGHT_INLINE void middle_of(const std::array<std::array<Real, 3>, 4>& q, Middle<Real>& m) {
-  for (std::size_t c = 0; c < 3; ++c) {
+// Of anything that the control points carry: their places, or their fractional coordinates.
+template <class Real, std::size_t count>
+LOOPWRIGHT_INLINE void middle_of(const std::array<std::array<Real, count>, 4>& q,
+                                 std::array<std::array<Real, count>, 3>& m) {
+  for (std::size_t c = 0; c < count; ++c) {
     const Real inner = q[2][c] - q[1][c], outer = q[3][c] - q[0][c];
     m[0][c] = 0.625 * inner + 0.125 * outer;
     m[1][c] = 0.5 * ((q[0][c] - q[1][c]) + (q[3][c] - q[2][c]));

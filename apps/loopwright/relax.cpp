@@ -104,12 +104,11 @@ int run(const RelaxCommand& command) {
   if (!piece) return exit_error;
   if (command.most_iterations) piece->options.most_iterations = *command.most_iterations;
   if (command.set) {
-    for (const FabricYarn& yarn : piece->state.fabric.yarns)
-      if (!yarn.natural_curvature.empty()) {
-        std::cerr << command.file
-                  << ": error: its yarn is set already; leave out --set, or start from its notation\n";
-        return exit_error;
-      }
+    if (is_set(piece->state.fabric)) {
+      std::cerr << command.file
+                << ": error: its yarn is set already; leave out --set, or start from its notation\n";
+      return exit_error;
+    }
     piece->options.set = *command.set;
   }
   set_thread_count(command.threads);

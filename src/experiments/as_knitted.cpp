@@ -49,6 +49,8 @@ void check_history(const Fabric& first, const RelaxOptions& options, const Knitt
           "data");
 }
 
+Measures sum(const Measures& a, const Measures& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
+
 // From where it is under another load; counts are those of the whole way.
 RelaxResult goes_on(const RelaxResult& from, RelaxOptions options, const Measures& load) {
   options.model.load = load;
@@ -85,8 +87,9 @@ KnittedRest relax_as_knitted(const Fabric& first, const RelaxOptions& options,
   if (history.hand_pull_N_m > 0) {
     const double force = options.model.material.reference_bend_N_m2 / (d * d * 1e-6);  // B/d^2 in N
     const double tension = history.hand_pull_N_m * d * 1e-3 / force;                   // B/d^3
-    const Measures load{tension * rest.relaxed.fabric.height, tension * rest.relaxed.fabric.width, 0};
-    for (const Measures& pull : {load, Measures{}}) rest.relaxed = goes_on(rest.relaxed, released, pull);
+    const Measures pull{tension * rest.relaxed.fabric.height, tension * rest.relaxed.fabric.width, 0},
+        own = options.model.load;  // which the cloth bears before and after
+    for (const Measures& load : {sum(own, pull), own}) rest.relaxed = goes_on(rest.relaxed, released, load);
   }
   return rest;
 }

@@ -25,6 +25,11 @@ Vec3 blend(const Fabric& fabric, const FabricYarn& yarn, int segment, const std:
 
 }  // namespace
 
+bool is_set(const Fabric& fabric) {
+  return std::any_of(fabric.yarns.begin(), fabric.yarns.end(),
+                     [](const FabricYarn& yarn) { return !yarn.natural_curvature.empty(); });
+}
+
 Vec3 control_point(const Fabric& fabric, const FabricYarn& yarn, int i) {
   const int n = static_cast<int>(yarn.control_points.size());
   if (i >= 0 && i < n) return yarn.control_points[static_cast<std::size_t>(i)];

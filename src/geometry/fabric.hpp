@@ -64,6 +64,8 @@ struct Fabric {
   Vec3 lattice(int m, int n) const { return {m * width + n * skew, n * height, 0}; }
 };
 
+// Is any of its yarn set, with a natural curvature of its own?
+bool is_set(const Fabric& fabric);
 // Control point i of a yarn, with the periodic continuation for i outside [0, n).
 Vec3 control_point(const Fabric& fabric, const FabricYarn& yarn, int i);
 // Place on the centreline at parameter t in [0, segments] (periodic yarns: any t).

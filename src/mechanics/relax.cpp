@@ -122,9 +122,7 @@ RelaxResult relax(const Fabric& fabric, const RelaxOptions& options) {
   if (!(options.set >= 0 && options.set <= 1))
     throw std::invalid_argument("the set of yarn must lie between 0 and 1");
   RelaxResult first = relax_as_it_is(fabric, options);
-  const bool is_set = std::any_of(fabric.yarns.begin(), fabric.yarns.end(),
-                                  [](const FabricYarn& yarn) { return !yarn.natural_curvature.empty(); });
-  if (is_set || options.set == 0 || !first.converged) return first;
+  if (is_set(fabric) || options.set == 0 || !first.converged) return first;
   RelaxOptions again = options;
   again.grow_in = false;
   again.history = std::move(first.history);

@@ -52,10 +52,11 @@ LOOPWRIGHT_WIDE void evaluate(const SegmentLanes& s, SegmentLanesTerm& out) {
   std::array<PointLaw<Lanes>, 4> law{};
   s.stretch.add(points, law, term);
   out.stretch = term.energy;
-  out.bend = Lanes{};
+  term.energy = Lanes{};
   BendOf<Lanes> bend = s.bend;
   bend.natural = s.set ? &s.natural_curvature : nullptr;
-  bend.add(points, law, out.bend);
+  bend.add(points, law, term);
+  out.bend = term.energy;
   if (s.set)
     for (std::size_t g = 0; g < 4; ++g) term.add_point<true>(points, g, law[g]);
   else

@@ -102,12 +102,10 @@ void put_fabric(hdf5::Writer& out, const Fabric& fabric) {
 }
 
 // Of set yarn alone: a row for every segment of every yarn, in order.
-void put_set(hdf5::Writer& out, const std::vector<FabricYarn>& yarns) {
-  if (std::all_of(yarns.begin(), yarns.end(),
-                  [](const FabricYarn& y) { return y.natural_curvature.empty(); }))
-    return;
+void put_set(hdf5::Writer& out, const Fabric& fabric) {
+  if (!is_set(fabric)) return;
   std::vector<double> curvatures;
-  for (const FabricYarn& yarn : yarns)
+  for (const FabricYarn& yarn : fabric.yarns)
     for (std::size_t e = 0; e < static_cast<std::size_t>(yarn.segments()); ++e) {
       const auto row = yarn.natural_curvature.empty() ? std::array<double, 4>{} : yarn.natural_curvature[e];
       curvatures.insert(curvatures.end(), row.begin(), row.end());
@@ -115,7 +113,8 @@ void put_set(hdf5::Writer& out, const std::vector<FabricYarn>& yarns) {
   out.column("segments/natural_curvature", curvatures, 4, "1/d");
 }
 
-void put_yarns(hdf5::Writer& out, const std::vector<FabricYarn>& yarns) {
+void put_yarns(hdf5::Writer& out, const Fabric& fabric) {
+  const std::vector<FabricYarn>& yarns = fabric.yarns;
   using Y = FabricYarn;
   out.column("yarns/yarn", gathered<std::int32_t>(yarns, [](const Y& y) { return y.yarn.value; }));
   out.column("yarns/carrier", gathered<std::int32_t>(yarns, [](const Y& y) { return y.carrier.value; }));
@@ -125,7 +124,7 @@ void put_yarns(hdf5::Writer& out, const std::vector<FabricYarn>& yarns) {
              1, "tex");
   out.column("yarns/segment_rest_length",
              gathered<double>(yarns, [](const Y& y) { return y.segment_rest_length; }), 1, "d");
-  put_set(out, yarns);
+  put_set(out, fabric);
   out.column("yarns/periodic", gathered<std::uint8_t>(yarns, [](const Y& y) { return y.periodic ? 1 : 0; }));
   out.column("yarns/shift", shifts(yarns), 2);
   out.column("yarns/control_points",
@@ -201,7 +200,7 @@ void write_state(const std::filesystem::path& path, const State& state) {
   try {
     hdf5::Writer out;
     put_fabric(out, state.fabric);
-    put_yarns(out, state.fabric.yarns);
+    put_yarns(out, state.fabric);
     put_loops(out, state.fabric);
     put_history(out, state.history);
     std::vector<std::string> names, text_names, texts;

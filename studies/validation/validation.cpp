@@ -314,10 +314,8 @@ void print_pulls(const Acrylic& a, Yarn yarn) {
 
 void print_acrylic_heading(const char* yarn) {
   std::printf(
-      "acrylic fabrics%s: strain at 0.1 N/mm (100 N/m), measured and here: in the first pull from rest, and "
-      "in "
-      "the\n"
-      "second after one to 0.2 N/mm, counted from where it begins (how far that is from rest)\n",
+      "acrylic fabrics%s: strain at 0.1 N/mm (100 N/m), measured and here: in the first pull from rest, and\n"
+      "in the second after one to 0.2 N/mm, counted from where it begins (how far that is from rest)\n",
       yarn);
   std::printf("    along   across  measured  first      off   second      off   begins at\n");
 }

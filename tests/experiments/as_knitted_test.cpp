@@ -129,6 +129,18 @@ TEST(AsKnitted, APullByHandLeavesWhatFrictionHolds) {
   EXPECT_THROW(relax_as_knitted(first, with_friction(0.25), history), std::invalid_argument);
 }
 
+// Cloth that hangs under a load of the caller's bears that load and no more when the hands have let go.
+TEST(AsKnitted, APullByHandGivesBackTheLoadThatWasThere) {
+  const Fabric first = knitted("g", "periodic", "");
+  RelaxOptions options = with_friction(0.25);
+  options.model.load = {0.3, 0.2, 0};
+  KnittingHistory history = history_of(first, 1, 0);
+  history.hand_pull_N_m = 10;
+  const RelaxResult pulled = relax_as_knitted(first, options, history).relaxed;
+  ASSERT_TRUE(pulled.converged);
+  for (const std::size_t k : {0u, 1u}) EXPECT_NEAR(pulled.measure_forces[k], options.model.load[k], 1e-3);
+}
+
 TEST(AsKnitted, PlatesKeepARibFlat) {
   const Fabric first = knitted("ge", "periodic", "");
   const RelaxOptions options = with_friction(0.25);

@@ -89,7 +89,12 @@ TEST(SetYarn, ClothKeepsItsSizeAndLosesItsForces) {
   EXPECT_EQ(check.intact, check.expected);
   EXPECT_EQ(set.pass_throughs, 0);
 
-  // Yarn that is set already keeps what it has.
+  // Yarn that is set already keeps what it has, and one set yarn sets the piece.
+  EXPECT_TRUE(is_set(set.fabric));
+  EXPECT_FALSE(is_set(unset.fabric));
+  Fabric mixed = unset.fabric;
+  mixed.yarns.push_back(set.fabric.yarns[0]);
+  EXPECT_TRUE(is_set(mixed));
   const RelaxResult again = relax(set.fabric, options);
   EXPECT_EQ(again.fabric.yarns[0].natural_curvature, set.fabric.yarns[0].natural_curvature);
 }

@@ -6,6 +6,8 @@
 #include <cstring>
 #include <tuple>
 
+#include "mechanics/contact/pair_input.hpp"
+
 namespace loopwright {
 namespace {
 
@@ -58,21 +60,14 @@ bool apart(const SampleBox& a, const SampleBox& b, double range) {
   return squared_distance(a, {0, 0, 0}, b) >= range * range;
 }
 
-// Samples of two segments, the second one's at a lattice image; samples of one yarn closer than `excluded`
-// along it (0: none) are passed over, as in ContactPairInput.
-struct SamplePair {
-  SampleView a, b;
-  std::array<double, 3> image{};
-  std::size_t count = 0;
-  double arc_offset = 0, spacing = 0, excluded = 0;
-};
-
+// Samples of one yarn that are excluded are passed over.
 template <bool with_excluded>
-LOOPWRIGHT_INLINE double least_squared_distance(const SamplePair& p, double beyond2) {
+LOOPWRIGHT_INLINE double least_squared_distance(const ContactPairInput& p, double beyond2) {
   const double far = beyond2;
+  const auto count = static_cast<std::size_t>(p.count);
   Lanes least = Lanes{} + beyond2;
   std::size_t j = 0;
-  for (; j + lanes <= p.count; j += lanes) {
+  for (; j + lanes <= count; j += lanes) {
     Lanes x, y, z;
     load(p.b.x + j, x);
     load(p.b.y + j, y);
@@ -81,7 +76,7 @@ LOOPWRIGHT_INLINE double least_squared_distance(const SamplePair& p, double beyo
     y += p.image[1];
     z += p.image[2];
     const Lanes at = Lanes{0, 1, 2, 3} + static_cast<double>(j);
-    for (std::size_t i = 0; i < p.count; ++i) {
+    for (std::size_t i = 0; i < count; ++i) {
       const Lanes dx = p.a.x[i] - x, dy = p.a.y[i] - y, dz = p.a.z[i] - z;
       Lanes d2 = dx * dx + dy * dy + dz * dz;
       if constexpr (with_excluded) {
@@ -92,8 +87,8 @@ LOOPWRIGHT_INLINE double least_squared_distance(const SamplePair& p, double beyo
     }
   }
   double nearest = std::min(std::min(least[0], least[1]), std::min(least[2], least[3]));
-  for (; j < p.count; ++j)
-    for (std::size_t i = 0; i < p.count; ++i) {
+  for (; j < count; ++j)
+    for (std::size_t i = 0; i < count; ++i) {
       const double dx = p.a.x[i] - (p.b.x[j] + p.image[0]), dy = p.a.y[i] - (p.b.y[j] + p.image[1]),
                    dz = p.a.z[i] - (p.b.z[j] + p.image[2]);
       const double along = p.arc_offset + (static_cast<double>(j) - static_cast<double>(i)) * p.spacing;
@@ -104,26 +99,9 @@ LOOPWRIGHT_INLINE double least_squared_distance(const SamplePair& p, double beyo
 }
 
 // `beyond2` where no distance is less.
-LOOPWRIGHT_WIDE double smallest_distance2(const SamplePair& p, double beyond2) {
+LOOPWRIGHT_WIDE double smallest_distance2(const ContactPairInput& p, double beyond2) {
   return p.excluded > 0 ? least_squared_distance<true>(p, beyond2)
                         : least_squared_distance<false>(p, beyond2);
-}
-
-SamplePair sample_pair(const YarnModel& model, const SamplePlaces& p, const SegmentPair& pair,
-                       const Vec3& image) {
-  const auto i0 = static_cast<std::size_t>(pair.a * model.samples),
-             j0 = static_cast<std::size_t>(pair.b * model.samples);
-  SamplePair samples{{&p.x[i0], &p.y[i0], &p.z[i0]},
-                     {&p.x[j0], &p.y[j0], &p.z[j0]},
-                     {image.x, image.y, image.z},
-                     static_cast<std::size_t>(model.samples)};
-  if (pair.same_yarn) {
-    const YarnModel::Yarn& yarn = model.yarn_of(pair.a);
-    samples.arc_offset = pair.arc_offset;
-    samples.spacing = yarn.rest_length / model.samples;
-    samples.excluded = model.excluded * yarn.diameter;
-  }
-  return samples;
 }
 
 // Boxes by coordinate, in the order of the grid's cells.
@@ -334,7 +312,7 @@ void find_segment_pairs(const YarnModel& model, const YarnState& state, const Sa
           SegmentPair pair;
           if (!may_touch(model, a, other, pair)) continue;
           pair.distance2 =
-              smallest_distance2(sample_pair(model, places, pair, state.lattice(pair.m, pair.n)), range2);
+              smallest_distance2(pair_input(model, places, pair, state.lattice(pair.m, pair.n)), range2);
           if (pair.distance2 < range2) pairs.push_back(pair);
         }
       }

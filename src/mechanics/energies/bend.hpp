@@ -46,9 +46,9 @@ struct BendOf {
     }
   }
 
-  // Energy goes to `energy`, derivatives at the points to `f`.
+  // The energy goes to `term`, derivatives at the points to `f`.
   LOOPWRIGHT_INLINE void add(const GaussPoints<Real>& points, std::array<PointLaw<Real>, 4>& f,
-                             Real& energy) const {
+                             SegmentTerm<Real>& term) const {
     for (std::size_t g = 0; g < 4; ++g) {
       const Real C = points.C[g], D = points.D[g];
       const Real i1 = 1.0 / points.A[g], i2 = i1 * i1, i3 = i2 * i1, i4 = i2 * i2;
@@ -59,7 +59,7 @@ struct BendOf {
       if (natural) {
         Law set;
         law(kappa2, g, set);
-        energy += weight * set.value;
+        term.energy += weight * set.value;
         w = weight * set.slope;
         // The law's own curvature acts on the slopes of kappa^2.
         const Real by = weight * set.curvature, by_A = i3 * (3.0 * c2 - 2.0 * D), by_C = -2.0 * C * i3;
@@ -70,7 +70,7 @@ struct BendOf {
         p.CD += by * by_C * i2;
         p.DD += by * i2 * i2;
       } else {
-        energy += weight * kappa2;
+        term.energy += weight * kappa2;
       }
       const Real w3 = -2.0 * w * i3, w4 = 6.0 * w * i4;
       p.A += w * i3 * (3.0 * c2 - 2.0 * D);
@@ -92,16 +92,9 @@ struct Bend {
   double rest_length = 1;                          // h
   const std::array<double, 4>* natural = nullptr;  // kappa_0 at the Gauss points, 1/d; none: straight
 
-  double energy(const SegmentDofs& x) const {
-    double sum = 0;
-    BendOf<double>{stiffness, rest_length, natural}.add_energy(gauss_points(x), sum);
-    return sum;
-  }
-  LocalTerm<12> evaluate(const SegmentDofs& x) const {
-    return element_term(x, [this](const auto& points, auto& law, auto& term) {
-      BendOf<double>{stiffness, rest_length, natural}.add(points, law, term.energy);
-    });
-  }
+  BendOf<double> of() const { return {stiffness, rest_length, natural}; }
+  double energy(const SegmentDofs& x) const { return element_energy(of(), x); }
+  LocalTerm<12> evaluate(const SegmentDofs& x) const { return element_term(of(), x); }
 };
 
 }  // namespace loopwright

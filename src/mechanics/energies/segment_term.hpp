@@ -235,14 +235,20 @@ inline LocalTerm<12> local_term(const SegmentTerm<double>& term) {
   return local;
 }
 
-// One segment by itself. add(points, laws, term): as StretchOf and BendOf have it.
-template <class Add>
-LocalTerm<12> element_term(const SegmentDofs& x, const Add& add) {
+// One segment by itself, of the energy that StretchOf or BendOf has.
+template <class EnergyOf>
+double element_energy(const EnergyOf& of, const SegmentDofs& x) {
+  double sum = 0;
+  of.add_energy(gauss_points(x), sum);
+  return sum;
+}
+template <class EnergyOf>
+LocalTerm<12> element_term(const EnergyOf& of, const SegmentDofs& x) {
   const GaussPoints<double> points = gauss_points(x);
   std::array<PointLaw<double>, 4> law{};
   SegmentTerm<double> term;
-  add(points, law, term);
-  for (std::size_t g = 0; g < 4; ++g) term.template add_point<true>(points, g, law[g]);
+  of.add(points, law, term);
+  for (std::size_t g = 0; g < 4; ++g) term.add_point<true>(points, g, law[g]);
   return local_term(term);
 }
 

@@ -80,16 +80,9 @@ struct Stretch {
   double rest_length = 1;  // h
   double evenness = 0.005;
 
-  double energy(const SegmentDofs& x) const {
-    double sum = 0;
-    StretchOf<double>{stiffness, rest_length, evenness}.add_energy(gauss_points(x), sum);
-    return sum;
-  }
-  LocalTerm<12> evaluate(const SegmentDofs& x) const {
-    return element_term(x, [this](const auto& points, auto& law, auto& term) {
-      StretchOf<double>{stiffness, rest_length, evenness}.add(points, law, term);
-    });
-  }
+  StretchOf<double> of() const { return {stiffness, rest_length, evenness}; }
+  double energy(const SegmentDofs& x) const { return element_energy(of(), x); }
+  LocalTerm<12> evaluate(const SegmentDofs& x) const { return element_term(of(), x); }
 };
 
 }  // namespace loopwright

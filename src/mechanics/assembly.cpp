@@ -41,6 +41,30 @@ void Assembly::drop_places() {
 void Assembly::update_pairs(const YarnState& state, double range) {
   prepare(state);
   find_segment_pairs(model_, state, places_, range, pairs_);
+  listed_ = extended_;
+  listed_measures_ = {state.width, state.height, state.skew};
+}
+
+void Assembly::find_moved() {
+  moved_.assign(static_cast<std::size_t>(model_.segments), 0);
+  const bool lists = listed_.size() == extended_.size();  // else no pairs have been looked for
+  for (std::size_t e = 0; lists && e < moved_.size(); ++e) {
+    const auto f = static_cast<std::size_t>(model_.first[e]);
+    // A sample is a mean of its segment's control points.
+    for (std::size_t k = f; k < f + 4; ++k)
+      moved_[e] = std::max(moved_[e], squared_norm(extended_[k] - listed_[k]));
+    moved_[e] = std::sqrt(moved_[e]);
+  }
+}
+
+// Not if their samples were so far apart when the pairs were found that they cannot have come together.
+bool Assembly::may_touch(const SegmentPair& pair, double reach, const YarnState& state) const {
+  const Vec3 image{pair.m * (state.width - listed_measures_[0]) + pair.n * (state.skew - listed_measures_[2]),
+                   pair.n * (state.height - listed_measures_[1]), 0};
+  const double together = reach + moved_[static_cast<std::size_t>(pair.a)] +
+                          moved_[static_cast<std::size_t>(pair.b)] +
+                          (pair.m == 0 && pair.n == 0 ? 0 : norm(image));
+  return pair.distance2 < together * together;
 }
 
 std::vector<Fraction> Assembly::fractions(const YarnState& state) const {
@@ -133,19 +157,24 @@ void Assembly::metric(BlockMatrix& matrix) const {
   }
   // Segments in contact: relative motion of their middles (weights 1/48, 23/48, 23/48, 1/48).
   constexpr std::array<double, 4> middle{1 / 48.0, 23 / 48.0, 23 / 48.0, 1 / 48.0};
+  const auto add_middles = [&](const FourNodes& rows, const FourNodes& columns, double sign) {
+    const bool run = UpperBlocks::is_run(columns);  // then they lie one behind the other in every row
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (model_.held[static_cast<std::size_t>(rows[k])]) continue;
+      const std::size_t first = matrix.place(rows[k], columns[0]);
+      for (std::size_t l = 0; l < 4; ++l)
+        if (!model_.held[static_cast<std::size_t>(columns[l])])
+          matrix.metric[run ? first + l : matrix.place(rows[k], columns[l])] += sign * middle[k] * middle[l];
+    }
+  };
   for (const std::int32_t at : active_) {
     const SegmentPair& pair = pairs_[static_cast<std::size_t>(at)];
     if (pair.same_yarn) continue;
-    const auto fa = static_cast<std::size_t>(model_.first[static_cast<std::size_t>(pair.a)]),
-               fb = static_cast<std::size_t>(model_.first[static_cast<std::size_t>(pair.b)]);
-    for (std::size_t k = 0; k < 4; ++k)
-      for (std::size_t l = 0; l < 4; ++l) {
-        const double w = middle[k] * middle[l];
-        add_to(base_of(fa + k), base_of(fa + l), w);
-        add_to(base_of(fb + k), base_of(fb + l), w);
-        add_to(base_of(fa + k), base_of(fb + l), -w);
-        add_to(base_of(fb + l), base_of(fa + k), -w);
-      }
+    const FourNodes a = nodes_of(pair.a), b = nodes_of(pair.b);
+    add_middles(a, a, 1);
+    add_middles(b, b, 1);
+    add_middles(a, b, -1);
+    add_middles(b, a, -1);
   }
 }
 
@@ -169,6 +198,7 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
     friction_.assign(model_.friction > 0 ? active_.size() : 0, {});
   }
 
+  if (!matrix) find_moved();
   const int chunks = chunk_count(model_.nodes);
   std::vector<Chunk> partial(static_cast<std::size_t>(chunks));
   parallel_chunks(chunks, [&](int c) {

@@ -89,6 +89,8 @@ class Assembly {
   Vec3 remembered_slip(const SegmentPair& pair) const;
   Vec3 relative_place(const FrictionContact& contact, const YarnState& state) const;
   void prepare(const YarnState& state);
+  void find_moved();
+  bool may_touch(const SegmentPair& pair, double reach, const YarnState& state) const;
   void build_pattern(BlockMatrix& hessian);
   void listed_pattern(BlockMatrix& hessian) const;
   bool in_contact(const SegmentPair& pair) const;
@@ -96,6 +98,11 @@ class Assembly {
 
   const YarnModel& model_;
   std::vector<SegmentPair> pairs_;
+  // Where the extended points and the lattice were when these were found; how far the samples of each segment
+  // have moved since, at most.
+  std::vector<Vec3> listed_;
+  Measures listed_measures_{};
+  std::vector<double> moved_;
   std::vector<std::int32_t> active_;       // pairs in contact in the last Hessian's state
   std::vector<FrictionContact> friction_;  // one for each of these, if there is friction
   ContactHistory remembered_;              // of the last accepted step

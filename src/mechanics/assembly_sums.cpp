@@ -1,6 +1,7 @@
 #include "mechanics/assembly_sums.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 #include "mechanics/contact/pair_input.hpp"
 #include "mechanics/energies/plates.hpp"
@@ -23,22 +24,46 @@ void add_measures_transposed(const Fraction& f, const Block& column, Block& to) 
   }
 }
 
-// A symmetric block: that of one lane.
-void add_symmetric(const std::array<Lanes, 6>& s, std::size_t lane, Block& to) {
-  const double xy = s[1][lane], xz = s[2][lane], yz = s[4][lane];
-  to[0] += s[0][lane];
-  to[1] += xy;
-  to[2] += xz;
-  to[3] += xy;
-  to[4] += s[3][lane];
-  to[5] += yz;
-  to[6] += xz;
-  to[7] += yz;
-  to[8] += s[5][lane];
+LOOPWRIGHT_INLINE void add_four(double* to, const Lanes& four) {
+  Lanes sum;
+  load(to, sum);
+  sum += four;
+  std::memcpy(to, &sum, sizeof sum);
 }
 
-void add_to(Block& to, const Block& from) {
-  for (std::size_t k = 0; k < 9; ++k) to[k] += from[k];
+LOOPWRIGHT_INLINE void add_to(Block& to, const Block& from) {
+  Lanes first, second;
+  load(from.data(), first);
+  load(from.data() + 4, second);
+  add_four(to.data(), first);
+  add_four(to.data() + 4, second);
+  to[8] += from[8];
+}
+
+// Four symmetric blocks, each in a lane of xx, xy, xz, yy, yz, zz, as the matrix has them: row by row.
+class FourBlocks {
+ public:
+  LOOPWRIGHT_INLINE explicit FourBlocks(const std::array<Lanes, 6>& s) : last_(s[5]) {
+    std::array<Lanes, lanes> front{s[0], s[1], s[2], s[3]}, back{s[4], s[5], s[4], s[5]};
+    transpose(front[0], front[1], front[2], front[3]);  // xx, xy, xz, yy
+    transpose(back[0], back[1], back[2], back[3]);      // yz, zz twice
+    for (std::size_t l = 0; l < lanes; ++l) {
+      first_[l] = __builtin_shufflevector(front[l], front[l], 0, 1, 2, 1);
+      second_[l] = __builtin_shufflevector(front[l], back[l], 3, 4, 2, 6);
+    }
+  }
+  LOOPWRIGHT_INLINE void add(std::size_t lane, Block& to) const {
+    add_four(to.data(), first_[lane]);
+    add_four(to.data() + 4, second_[lane]);
+    to[8] += last_[lane];
+  }
+
+ private:
+  std::array<Lanes, lanes> first_, second_;
+  Lanes last_;
+};
+LOOPWRIGHT_INLINE std::array<FourBlocks, 4> four_blocks(const std::array<std::array<Lanes, 6>, 4>& s) {
+  return {FourBlocks(s[0]), FourBlocks(s[1]), FourBlocks(s[2]), FourBlocks(s[3])};
 }
 
 }  // namespace
@@ -98,28 +123,29 @@ void Assembly::add_segments(Chunk& chunk) const {
   for (int e = 0; e < model_.segments; ++e) {
     if (!(chunk.matrix ? touches(chunk, e) : chunk.owns(nodes_of(e)[0]))) continue;
     group[count++] = e;
+    if (chunk.matrix) UpperBlocks(*chunk.matrix, diagonal_, chunk.low, chunk.high).fetch(nodes_of(e));
     if (count == lanes) flush();
     if (model_.plates.stiffness > 0) add_plates(e, chunk);
   }
   flush();
 }
 
-void Assembly::scatter(const SegmentLanesTerm& term, std::size_t lane, int segment, Chunk& chunk) const {
+LOOPWRIGHT_WIDE void Assembly::scatter(const SegmentLanesTerm& term, std::size_t lane, int segment,
+                                       Chunk& chunk) const {
   const FourNodes n = nodes_of(segment);
   const UpperBlocks upper(*chunk.matrix, diagonal_, chunk.low, chunk.high);
   for (std::size_t k = 0; k < 4; ++k) {
     if (!chunk.owns(n[k])) continue;
     const auto& g = term.gradient[k];
     add(chunk.gradient->u[static_cast<std::size_t>(n[k])], g[0][lane], g[1][lane], g[2][lane]);
-    Block& border = chunk.matrix->border[static_cast<std::size_t>(n[k])];
-    for (std::size_t c = 0; c < 9; ++c) border[c] += term.border[k][c][lane];
+    add_to(chunk.matrix->border[static_cast<std::size_t>(n[k])], term.border[lane][k]);
   }
   upper.each_own(n, [&](std::size_t k, std::size_t l, Block& to, bool transposed) {
-    const auto& block = term.blocks[block_of_points[k][l]];
+    const Block& block = term.blocks[lane][block_of_points[k][l]];
     if (!transposed)
-      for (std::size_t c = 0; c < 9; ++c) to[c] += block[c][lane];
+      add_to(to, block);
     else
-      for (std::size_t c = 0; c < 9; ++c) to[c] += block[3 * (c % 3) + c / 3][lane];
+      for (std::size_t c = 0; c < 9; ++c) to[c] += block[3 * (c % 3) + c / 3];
   });
   if (!chunk.owns(n[0])) return;
   for (std::size_t k = 0; k < 3; ++k) chunk.measures[k] += term.measures[k][lane];
@@ -165,14 +191,19 @@ void Assembly::add_contacts(Chunk& chunk) {
     const SegmentPair& pair = pairs_[chunk.matrix ? static_cast<std::size_t>(active_[k]) : k];
     const bool whole = chunk.owns(nodes_of(pair.a)[0]);
     if (!whole && !(chunk.matrix && (touches(chunk, pair.a) || touches(chunk, pair.b)))) continue;
-    const double scale = law_scale(pair.a, pair.b);
-    if (!contact_input(pair, chunk.state->lattice(pair.m, pair.n), model_.contact.outer * scale, in))
-      continue;
+    const double scale = law_scale(pair.a, pair.b), reach = model_.contact.outer * scale;
+    if (!chunk.matrix && !may_touch(pair, reach, *chunk.state)) continue;
+    if (!contact_input(pair, chunk.state->lattice(pair.m, pair.n), reach, in)) continue;
     const ContactLaw law = scale == 1 ? model_.contact : model_.contact.scaled(scale);
     if (!chunk.matrix) {
       chunk.energy.contact += contact_energy(in, law);
       continue;
     }
+    const UpperBlocks upper(*chunk.matrix, diagonal_, chunk.low, chunk.high);
+    const FourNodes na = nodes_of(pair.a), nb = nodes_of(pair.b);
+    upper.fetch(na);
+    upper.fetch(nb);
+    upper.fetch_between(na, nb);
     evaluate(in, law, model_.weights, term);
     if (!term.active) continue;
     if (whole) chunk.energy.contact += term.energy;
@@ -218,7 +249,7 @@ Assembly::FrictionContact Assembly::add_friction(const SegmentPair& pair, const 
   return rub;
 }
 
-void Assembly::scatter(const ContactTerm& term, const SegmentPair& pair, Chunk& chunk) const {
+LOOPWRIGHT_WIDE void Assembly::scatter(const ContactTerm& term, const SegmentPair& pair, Chunk& chunk) const {
   const FourNodes na = nodes_of(pair.a), nb = nodes_of(pair.b);
   const auto fa = static_cast<std::size_t>(model_.first[static_cast<std::size_t>(pair.a)]),
              fb = static_cast<std::size_t>(model_.first[static_cast<std::size_t>(pair.b)]);
@@ -228,12 +259,15 @@ void Assembly::scatter(const ContactTerm& term, const SegmentPair& pair, Chunk& 
     frac_b[k] = {fraction_[fb + k][0] + pair.m, fraction_[fb + k][1] + pair.n};
   }
   const UpperBlocks upper(*chunk.matrix, diagonal_, chunk.low, chunk.high);
-  upper.each_own(
-      na, [&](std::size_t k, std::size_t l, Block& to, bool) { add_symmetric(term.a.hessian[k], l, to); });
-  upper.each_own(
-      nb, [&](std::size_t k, std::size_t l, Block& to, bool) { add_symmetric(term.b.hessian[k], l, to); });
-  upper.each_between(na, nb,
-                     [&](std::size_t k, std::size_t l, Block& to) { add_symmetric(term.between[k], l, to); });
+  const std::array<FourBlocks, 4> of_a = four_blocks(term.a.hessian), of_b = four_blocks(term.b.hessian),
+                                  between = four_blocks(term.between);
+  upper.each_own(na, [&](std::size_t k, std::size_t l, Block& to, bool)
+                         LOOPWRIGHT_INLINE_LAMBDA { of_a[k].add(l, to); });
+  upper.each_own(nb, [&](std::size_t k, std::size_t l, Block& to, bool)
+                         LOOPWRIGHT_INLINE_LAMBDA { of_b[k].add(l, to); });
+  upper.each_between(na, nb, [&](std::size_t k, std::size_t l, Block& to) LOOPWRIGHT_INLINE_LAMBDA {
+    between[k].add(l, to);
+  });
 
   ContactBorder columns;
   border(term, frac_a, frac_b, columns);

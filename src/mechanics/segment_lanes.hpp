@@ -2,6 +2,7 @@
 #pragma once
 #include "mechanics/energies/bend.hpp"
 #include "mechanics/energies/stretch.hpp"
+#include "mechanics/linear/block_matrix.hpp"
 
 namespace loopwright {
 
@@ -17,10 +18,11 @@ struct SegmentLanes {
 struct SegmentLanesTerm {
   Lanes stretch, bend;  // energies
   std::array<std::array<Lanes, 3>, 4> gradient;
-  SegmentBlocks<Lanes> blocks;
-  // The Hessian times M = [[xi, 0, eta], [0, eta, 0], [0, 0, 0]] of all points: by point, row by row; M'
-  // times that; M' times the gradient.
-  std::array<std::array<Lanes, 9>, 4> border;
+  // [lane]: as SegmentBlocks has them, each in one piece as the matrix has it.
+  std::array<std::array<Block, 10>, lanes> blocks;
+  // The Hessian times M = [[xi, 0, eta], [0, eta, 0], [0, 0, 0]] of all points: [lane], by point; M' times
+  // that; M' times the gradient.
+  std::array<std::array<Block, 4>, lanes> border;
   std::array<Lanes, 9> corner;
   std::array<Lanes, 3> measures;
 };

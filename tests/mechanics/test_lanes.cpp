@@ -98,7 +98,7 @@ void check_segments(bool set, Generator& random) {
           for (std::size_t e = 0; e < 3; ++e) {
             h[c][e] = s.hessian[3 * k + c][3 * l + e] + b.hessian[3 * k + c][3 * l + e];
             if (k <= l) {
-              EXPECT_NEAR(out.blocks[block_of_points[k][l]][3 * c + e][lane], h[c][e], 1e-12 * scale);
+              EXPECT_NEAR(out.blocks[lane][block_of_points[k][l]][3 * c + e], h[c][e], 1e-12 * scale);
             }
           }
         add_times_measures(h, in.fractions[l][0][lane], in.fractions[l][1][lane], border[k]);
@@ -107,7 +107,7 @@ void check_segments(bool set, Generator& random) {
       for (std::size_t c = 0; c < 3; ++c)
         EXPECT_NEAR(out.gradient[k][c][lane], s.gradient[3 * k + c] + b.gradient[3 * k + c], 1e-12 * scale);
       for (std::size_t c = 0; c < 9; ++c)
-        EXPECT_NEAR(out.border[k][c][lane], border[k][c], 1e-11 * scale)
+        EXPECT_NEAR(out.border[lane][k][c], border[k][c], 1e-11 * scale)
             << "entry " << c << " of point " << k;
     }
   }

@@ -2,11 +2,13 @@
 // matrix. (Iterations on pieces of two sizes: tests/pipeline/held_piece_test.cpp.)
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "fabrics.hpp"
 #include "mechanics/assembly.hpp"
 #include "mechanics/binding_space.hpp"
+#include "mechanics/linear/dense_cholesky.hpp"
 #include "mechanics/linear/schwarz.hpp"
 
 namespace loopwright {
@@ -168,6 +170,29 @@ TEST(CompactFactor, SolvesToSinglePrecision) {
     EXPECT_LT(error(), 1e-8);
     factor.clear();
   }
+}
+
+// A dense factor that fails says along what the matrix is not positive, and which shifts are too small for
+// it: no factor of these may succeed. In the end one does.
+TEST(DenseCholesky, SaysWhichShiftsAreTooSmall) {
+  const Problem p("ge", 3);
+  DenseCholesky cholesky;
+  Unknowns against;
+  double try_shift = 1e-6;
+  int failed = 0;
+  for (; failed < 60 && !cholesky.factor(p.hessian, try_shift, against); ++failed) {
+    if (against.u.empty()) GTEST_SKIP() << "only LAPACK's factor tells how far it got";
+    Unknowns image;
+    multiply(p.hessian, try_shift, against, image);
+    EXPECT_LT(dot(against, image), 0) << "shift " << try_shift;
+    const double too_small = shift_against(p.hessian, against);
+    EXPECT_GT(too_small, try_shift);
+    Unknowns other;
+    EXPECT_FALSE(cholesky.factor(p.hessian, 0.999 * too_small, other));
+    try_shift = 4 * std::max(try_shift, too_small);
+  }
+  EXPECT_GT(failed, 0);
+  EXPECT_LT(failed, 60);
 }
 
 TEST(Schwarz, SaysThatTheMatrixIsNotDefinite) {

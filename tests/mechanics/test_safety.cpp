@@ -80,6 +80,30 @@ TEST(SegmentPairs, NeighboursAlongAYarnOnlyWhereTheyCanTouch) {
       0U);
 }
 
+// Pairs that cannot have come together since the list was made are passed over: the energy is that of a list
+// made anew (summed in its own order), for yarns and lattice moved.
+TEST(SegmentPairs, EnergyOfAMovedCellMissesNoContact) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> any(-1, 1);
+  const Fabric fabric = relax(knitted("ge", "periodic", "", 17, 10), frictionless()).fabric;
+  ModelOptions options = frictionless().model;
+  options.material.contact.core = -1;  // yarns may be anywhere
+  const YarnModel model = build_yarn_model(fabric, options);
+  const YarnState state = build_yarn_state(fabric);
+  Assembly assembly(model), anew(model);
+  assembly.update_pairs(state, range);
+  for (int repeat = 0; repeat < 20; ++repeat) {
+    Unknowns step = no_motion(fabric);
+    for (Vec3& u : step.u) u = 0.15 * Vec3{any(random), any(random), any(random)};
+    step.g = {0.1 * any(random), 0.1 * any(random), 0.1 * any(random)};
+    const YarnState moved = assembly.moved(state, step, 1);
+    anew.update_pairs(moved, range);
+    const double contact = anew.energy(moved).contact;
+    EXPECT_GT(contact, 0);
+    EXPECT_NEAR(assembly.energy(moved).contact, contact, 1e-12 * contact);
+  }
+}
+
 TEST(SafeStep, AYarnPushedThroughAnotherStopsBeforeIt) {
   const Fabric fabric = two_yarns();
   for (const double push : {-1.3, -3.0, -50.0}) {

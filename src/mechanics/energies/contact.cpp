@@ -5,10 +5,43 @@ namespace {
 
 constexpr std::size_t enough_pairs = 64;  // of samples in contact, to be gone through together
 
+// Numbers of samples. Not bytes: these might be part of anything, for all the compiler knows.
+using SampleNumber = std::uint16_t;
+
+// The samples of a that are nearer to the box round b's than the root of outer2; how many is returned.
+LOOPWRIGHT_INLINE std::size_t rows_near(const ContactPairInput& in, double outer2, SampleNumber* rows) {
+  const auto n = static_cast<std::size_t>(in.count);
+  std::size_t count = 0, i = 0;
+  for (; i + lanes <= n; i += lanes) {
+    Lanes d2{};
+    for (std::size_t c = 0; in.box_b && c < 3; ++c) {
+      Lanes place;
+      load((c == 0 ? in.a.x : c == 1 ? in.a.y : in.a.z) + i, place);
+      place -= in.image[c];
+      const Lanes before = in.box_b->low[c] - place, after = place - in.box_b->high[c];
+      Lanes gap = before > after ? before : after;
+      gap = gap > 0.0 ? gap : Lanes{};
+      d2 += gap * gap;
+    }
+    for (std::size_t l = 0; l < lanes; ++l) {
+      rows[count] = static_cast<SampleNumber>(i + l);
+      count += d2[l] < outer2 ? 1 : 0;
+    }
+  }
+  for (; i < n; ++i) {
+    rows[count] = static_cast<SampleNumber>(i);
+    count += !in.box_b || squared_distance(in.a.x[i] - in.image[0], in.a.y[i] - in.image[1],
+                                           in.a.z[i] - in.image[2], *in.box_b) < outer2
+                 ? 1
+                 : 0;
+  }
+  return count;
+}
+
 // Pairs of samples in contact, found row by row (a sample of a with all of b).
 struct TouchingPairs {
   static constexpr std::size_t most = enough_pairs + most_contact_samples + lanes;
-  std::array<std::uint8_t, most> i, j;
+  std::array<SampleNumber, most> i, j;
   std::array<double, most> distance2;
   std::size_t count = 0;
 
@@ -16,7 +49,6 @@ struct TouchingPairs {
     const auto n = static_cast<std::size_t>(in.count);
     const double px = in.a.x[row] - in.image[0], py = in.a.y[row] - in.image[1],
                  pz = in.a.z[row] - in.image[2];
-    if (in.box_b && squared_distance(px, py, pz, *in.box_b) >= outer2) return;
     std::array<double, most_contact_samples> d2;
     if (squared_distances(px, py, pz, in.b, n, outer2, d2.data()) >= outer2) return;
     if (in.excluded > 0)
@@ -24,12 +56,14 @@ struct TouchingPairs {
         const double along = in.arc_offset + (static_cast<double>(k) - static_cast<double>(row)) * in.spacing;
         if (std::abs(along) < in.excluded) d2[k] = outer2;
       }
+    std::size_t next = count;
     for (std::size_t k = 0; k < n; ++k) {
-      i[count] = static_cast<std::uint8_t>(row);
-      j[count] = static_cast<std::uint8_t>(k);
-      distance2[count] = d2[k];
-      count += d2[k] < outer2 ? 1 : 0;
+      i[next] = static_cast<SampleNumber>(row);
+      j[next] = static_cast<SampleNumber>(k);
+      distance2[next] = d2[k];
+      next += d2[k] < outer2 ? 1 : 0;
     }
+    count = next;
   }
   // Lanes behind the last pair repeat it.
   LOOPWRIGHT_INLINE void fill_up() {
@@ -41,16 +75,22 @@ struct TouchingPairs {
   }
 };
 
+// What is summed before it goes to control points: for every sample of a that is touched the sum over b's of
+// K_ij, lanes: by the weights of b's control points.
+struct RowSums {
+  std::array<std::array<Lanes, 6>, most_contact_samples> of;
+};
+
 LOOPWRIGHT_INLINE void start(std::size_t samples, ContactSide& side) {
   for (std::size_t k = 0; k < samples; ++k) {
-    side.sample[k] = {};
+    clear(side.sample[k]);
     side.touched[k] = false;
   }
 }
 
-// Forces and Hessians of the pairs found so far, to the samples and to `between`.
+// Forces and Hessians of the pairs found so far, to the samples and rows.
 LOOPWRIGHT_INLINE void add_pairs(const ContactPairInput& in, TouchingPairs& pairs, const ContactLaw& law,
-                                 const SampleWeights& weights, ContactTerm& term) {
+                                 const SampleWeights& weights, ContactTerm& term, RowSums& rows) {
   const double weight = in.weight;
   pairs.fill_up();
   alignas(Lanes) std::array<std::array<Lanes, 3>, TouchingPairs::most> of_pair;
@@ -85,8 +125,10 @@ LOOPWRIGHT_INLINE void add_pairs(const ContactPairInput& in, TouchingPairs& pair
   for (std::size_t k = 0; k < pairs.count;) {
     // All of one sample of a together.
     const std::size_t i = pairs.i[k];
-    std::array<Lanes, 3> sum{};
-    std::array<Lanes, 6> row{};  // sum over j of K_ij, lanes: by the weights of b's control points
+    std::array<Lanes, 3> sum;
+    std::array<Lanes, 6> row;
+    clear(sum);
+    clear(row);
     for (; k < pairs.count && pairs.i[k] == i; ++k) {
       const std::array<Lanes, 3>& p = of_pair[k];
       const std::size_t j = pairs.j[k];
@@ -101,36 +143,56 @@ LOOPWRIGHT_INLINE void add_pairs(const ContactPairInput& in, TouchingPairs& pair
       row[4] += w * p[2][0];
       row[5] += w * p[2][1];
     }
-    for (std::size_t c = 0; c < 3; ++c) term.a.sample[i][c] += sum[c];
+    term.a.sample[i] = sum;
     term.a.touched[i] = true;
-    for (std::size_t a = 0; a < 4; ++a)
-      for (std::size_t c = 0; c < 6; ++c) term.between[a][c] -= weights[i][a] * row[c];
+    rows.of[i] = row;
   }
   pairs.count = 0;
 }
 
-// One side's samples to its control points; sign: of its gradient.
-LOOPWRIGHT_INLINE void fold(std::size_t samples, const SampleWeights& weights, double sign,
-                            ContactSide& side) {
-  side.place = Lanes{};
+// One side's samples to its control points; sign: of its gradient. `between`: of side a, by `rows`.
+template <bool with_between>
+LOOPWRIGHT_INLINE void fold(std::size_t samples, const SampleWeights& weights, double sign, ContactSide& side,
+                            const RowSums& rows, std::array<std::array<Lanes, 6>, 4>& between) {
+  std::array<SampleNumber, most_contact_samples> touched;
+  std::size_t count = 0;
+  Lanes place{};
+  std::array<Lanes, 3> gradient;
+  clear(gradient);
   side.size = 0;
-  side.gradient = {};
-  side.hessian = {};
   for (std::size_t k = 0; k < samples; ++k) {
     if (!side.touched[k]) continue;
-    const std::array<Lanes, 3>& s = side.sample[k];
+    touched[count++] = static_cast<SampleNumber>(k);
+    const Lanes& f = side.sample[k][0];
     Lanes w;
     load(weights[k].data(), w);
-    const double size = std::sqrt(s[0][0] * s[0][0] + s[0][1] * s[0][1] + s[0][2] * s[0][2]);
+    const double size = std::sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]);
     side.size += size;
-    side.place += size * w;
-    for (std::size_t c = 0; c < 3; ++c) side.gradient[c] += (sign * s[0][c]) * w;
-    std::array<Lanes, 6> h;
-    for (std::size_t c = 0; c < 4; ++c) h[c] = s[1][c] * w;
-    h[4] = s[2][0] * w;
-    h[5] = s[2][1] * w;
-    for (std::size_t a = 0; a < 4; ++a)
-      for (std::size_t c = 0; c < 6; ++c) side.hessian[a][c] += weights[k][a] * h[c];
+    place += size * w;
+    for (std::size_t c = 0; c < 3; ++c) gradient[c] += (sign * f[c]) * w;
+  }
+  side.place = place;
+  side.gradient = gradient;
+  // One control point after the other, so that its sums stay in registers.
+  for (std::size_t a = 0; a < 4; ++a) {
+    std::array<Lanes, 6> own, other;
+    clear(own);
+    clear(other);
+    for (std::size_t t = 0; t < count; ++t) {
+      const std::size_t k = touched[t];
+      const std::array<Lanes, 3>& s = side.sample[k];
+      Lanes w;
+      load(weights[k].data(), w);
+      const double wa = weights[k][a];
+      const Lanes both = wa * w;
+      for (std::size_t c = 0; c < 4; ++c) own[c] += s[1][c] * both;
+      own[4] += s[2][0] * both;
+      own[5] += s[2][1] * both;
+      if constexpr (with_between)
+        for (std::size_t c = 0; c < 6; ++c) other[c] -= wa * rows.of[k][c];
+    }
+    side.hessian[a] = own;
+    if constexpr (with_between) between[a] = other;
   }
 }
 
@@ -140,12 +202,13 @@ LOOPWRIGHT_INLINE void sum_of(const Lanes& x, double& sum) { sum = (x[0] + x[1])
 
 LOOPWRIGHT_WIDE double contact_energy(const ContactPairInput& in, const ContactLaw& law) {
   const double outer2 = law.outer * law.outer;
-  const auto n = static_cast<std::size_t>(in.count);
+  std::array<SampleNumber, most_contact_samples + lanes> rows;
+  const std::size_t near = rows_near(in, outer2, rows.data());
   TouchingPairs pairs;
   double energy = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    pairs.add_row(in, i, outer2);
-    if (pairs.count == 0 || (pairs.count < enough_pairs && i + 1 < n)) continue;
+  for (std::size_t r = 0; r < near; ++r) {
+    pairs.add_row(in, rows[r], outer2);
+    if (pairs.count == 0 || (pairs.count < enough_pairs && r + 1 < near)) continue;
     pairs.fill_up();
     for (std::size_t k = 0; k < pairs.count; k += lanes) {
       Lanes d2, D, value, slope, curvature;
@@ -163,22 +226,24 @@ LOOPWRIGHT_WIDE void evaluate(const ContactPairInput& in, const ContactLaw& law,
                               ContactTerm& term) {
   const double outer2 = law.outer * law.outer;
   const auto n = static_cast<std::size_t>(in.count);
+  std::array<SampleNumber, most_contact_samples + lanes> rows;
+  const std::size_t near = rows_near(in, outer2, rows.data());
   TouchingPairs pairs;
+  RowSums sums;
   term.active = false;
-  for (std::size_t i = 0; i < n; ++i) {
-    pairs.add_row(in, i, outer2);
-    if (pairs.count == 0 || (pairs.count < enough_pairs && i + 1 < n)) continue;
+  for (std::size_t r = 0; r < near; ++r) {
+    pairs.add_row(in, rows[r], outer2);
+    if (pairs.count == 0 || (pairs.count < enough_pairs && r + 1 < near)) continue;
     if (!term.active) {
       term.active = true;
       start(n, term.a);
       start(n, term.b);
-      term.between = {};
     }
-    add_pairs(in, pairs, law, weights, term);
+    add_pairs(in, pairs, law, weights, term, sums);
   }
   if (!term.active) return;
-  fold(n, weights, 1, term.a);
-  fold(n, weights, -1, term.b);
+  fold<true>(n, weights, 1, term.a, sums, term.between);
+  fold<false>(n, weights, -1, term.b, sums, term.between);
   Lanes whole{};
   for (std::size_t k = 0; k < n; ++k) whole += term.a.sample[k][0];
   term.push = {whole[0], whole[1], whole[2]};

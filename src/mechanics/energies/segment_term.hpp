@@ -72,18 +72,28 @@ struct GaussPoints {
 // Derivatives of the law at a Gauss point, weights included; CD and DD are zero for all but set yarn.
 template <class Real>
 struct PointLaw {
-  Real A{}, C{}, D{}, AA{}, AC{}, AD{}, CC{}, CD{}, DD{};
+  Real A, C, D, AA, AC, AD, CC, CD, DD;
+  LOOPWRIGHT_INLINE PointLaw() {
+    for (Real* const x : {&A, &C, &D, &AA, &AC, &AD, &CC, &CD, &DD}) clear(*x);
+  }
 };
 
 // Value, gradient and Hessian by v, a and j.
 template <class Real>
 struct SegmentTerm {
-  Real energy{};
-  Middle<Real> gradient{};
+  Real energy;
+  Middle<Real> gradient;
   // Hessian by coordinate: of one with itself (xx, yy, zz) the six by v v, v a, v j, a a, a j, j j; of one
   // with another (xy, xz, yz) the nine by v v, v a, v j, a v, a a, a j, j v, j a, j j.
-  std::array<std::array<Real, 6>, 3> own{};
-  std::array<std::array<Real, 9>, 3> mixed{};
+  std::array<std::array<Real, 6>, 3> own;
+  std::array<std::array<Real, 9>, 3> mixed;
+
+  LOOPWRIGHT_INLINE SegmentTerm() {
+    clear(energy);
+    clear(gradient);
+    clear(own);
+    clear(mixed);
+  }
 
   // by g g'
   LOOPWRIGHT_INLINE void add_dyad(const Real& by, const Middle<Real>& g) {
@@ -245,7 +255,7 @@ double element_energy(const EnergyOf& of, const SegmentDofs& x) {
 template <class EnergyOf>
 LocalTerm<12> element_term(const EnergyOf& of, const SegmentDofs& x) {
   const GaussPoints<double> points = gauss_points(x);
-  std::array<PointLaw<double>, 4> law{};
+  std::array<PointLaw<double>, 4> law;
   SegmentTerm<double> term;
   of.add(points, law, term);
   for (std::size_t g = 0; g < 4; ++g) term.add_point<true>(points, g, law[g]);

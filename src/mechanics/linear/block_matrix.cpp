@@ -93,4 +93,16 @@ void multiply(const BlockMatrix& matrix, double shift, const Unknowns& x, Unknow
     for (std::size_t k = 0; k < 3; ++k) y.g[k] += shift * matrix.measure_metric[k] * x.g[k];
 }
 
+double shift_against(const BlockMatrix& matrix, const Unknowns& x) {
+  Unknowns y;
+  multiply(matrix, x, y);
+  double metric = 0;
+  for (std::size_t i = 0; i < x.u.size(); ++i)
+    for (auto k = static_cast<std::size_t>(matrix.row_start[i]);
+         k < static_cast<std::size_t>(matrix.row_start[i + 1]); ++k)
+      metric += matrix.metric[k] * dot(x.u[i], x.u[static_cast<std::size_t>(matrix.column[k])]);
+  for (std::size_t k = 0; k < 3; ++k) metric += matrix.measure_metric[k] * x.g[k] * x.g[k];
+  return metric > 0 ? -dot(x, y) / metric : 0;
+}
+
 }  // namespace loopwright

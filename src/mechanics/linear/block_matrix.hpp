@@ -47,4 +47,7 @@ void axpy(double s, const Unknowns& x, Unknowns& y);  // y += s x
 void multiply(const BlockMatrix& matrix, double shift, const Unknowns& x, Unknowns& y);
 inline void multiply(const BlockMatrix& matrix, const Unknowns& x, Unknowns& y) { multiply(matrix, 0, x, y); }
 
+// The shift up to which x'(A + shift D)x is not positive: no smaller one makes the matrix positive definite.
+double shift_against(const BlockMatrix& matrix, const Unknowns& x);
+
 }  // namespace loopwright

@@ -15,13 +15,25 @@ extern "C" void openblas_set_num_threads(int) __attribute__((weak));
 
 namespace loopwright {
 
+namespace {
+
+void to_unknowns(const std::vector<double>& numbers, Unknowns& x) {
+  x.u.resize((numbers.size() - 3) / 3);
+  for (std::size_t i = 0; i < x.u.size(); ++i)
+    for (std::size_t d = 0; d < 3; ++d) x.u[i][static_cast<int>(d)] = numbers[3 * i + d];
+  std::copy(numbers.end() - 3, numbers.end(), x.g.begin());
+}
+
+}  // namespace
+
 DenseCholesky::DenseCholesky() {
 #ifdef LOOPWRIGHT_HAS_CHOLMOD
   if (openblas_set_num_threads) openblas_set_num_threads(1);
 #endif
 }
 
-bool DenseCholesky::factor(const BlockMatrix& m, double shift) {
+bool DenseCholesky::factor(const BlockMatrix& m, double shift, Unknowns& against) {
+  against.u.clear();
   order_ = 3 * m.rows() + 3;
   const auto order = static_cast<std::size_t>(order_), rows = static_cast<std::size_t>(m.rows());
   entry_.resize(order * order);
@@ -46,12 +58,28 @@ bool DenseCholesky::factor(const BlockMatrix& m, double shift) {
 #ifdef LOOPWRIGHT_HAS_CHOLMOD
   int info = 0;
   dpotrf_("L", &order_, entry_.data(), &order_, &info);
+  if (info > 0) direction_against(static_cast<std::size_t>(info) - 1, against);
   return info == 0;
 #else
   Eigen::Map<Eigen::MatrixXd> entries(entry_.data(), order_, order_);
   Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>, Eigen::Lower> in_place(entries);
   return in_place.info() == Eigen::Success;
 #endif
+}
+
+// Before the pivot that was not positive lies a whole factor L, and in the pivot's row l: x = (-L'^-1 l', 1,
+// 0) has that pivot for x'(A + shift D)x.
+void DenseCholesky::direction_against(std::size_t pivot, Unknowns& against) const {
+  const auto order = static_cast<std::size_t>(order_);
+  std::vector<double> x(order, 0.0);
+  x[pivot] = 1;
+  for (std::size_t k = pivot; k-- > 0;) {
+    const double* const column = entry_.data() + k * order;
+    double sum = 0;
+    for (std::size_t r = k + 1; r <= pivot; ++r) sum += column[r] * x[r];
+    x[k] = -sum / column[k];
+  }
+  to_unknowns(x, against);
 }
 
 void DenseCholesky::solve(const Unknowns& b, Unknowns& x) {
@@ -71,10 +99,7 @@ void DenseCholesky::solve(const Unknowns& b, Unknowns& x) {
   entries.triangularView<Eigen::Lower>().solveInPlace(solution);
   entries.triangularView<Eigen::Lower>().transpose().solveInPlace(solution);
 #endif
-  x.u.resize(rows);
-  for (std::size_t i = 0; i < rows; ++i)
-    for (std::size_t d = 0; d < 3; ++d) x.u[i][static_cast<int>(d)] = right_[3 * i + d];
-  std::copy(right_.end() - 3, right_.end(), x.g.begin());
+  to_unknowns(right_, x);
 }
 
 }  // namespace loopwright

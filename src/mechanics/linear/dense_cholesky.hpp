@@ -13,12 +13,15 @@ namespace loopwright {
 class DenseCholesky {
  public:
   DenseCholesky();
-  // False if the matrix is not positive definite.
-  bool factor(const BlockMatrix& matrix, double shift);
+  // False if the matrix is not positive definite; then `against`, if the factor got far enough to tell, is a
+  // direction x with x'(A + shift D)x not positive (up to rounding), else empty.
+  bool factor(const BlockMatrix& matrix, double shift, Unknowns& against);
   // x = M^-1 b for the matrix of the last successful factor().
   void solve(const Unknowns& b, Unknowns& x);
 
  private:
+  void direction_against(std::size_t pivot, Unknowns& against) const;
+
   int order_ = 0;
   std::vector<double> entry_;  // [order][order]; column after column, of which the lower triangle counts
   std::vector<double> right_;  // [order] right-hand side, then solution

@@ -44,10 +44,21 @@ StepSolver::Report StepSolver::solve(const BlockMatrix& hessian, const YarnState
 
 bool StepSolver::solve_direct(const BlockMatrix& hessian, const Unknowns& gradient, double& shift,
                               int& raised, Unknowns& step) {
+  const bool dense = model_.nodes < dense_nodes;
+  Unknowns against;
+  // No shift is tried that a direction of an earlier failure speaks against: often half of all factors.
+  double too_small = against_.u.empty() ? 0 : shift_against(hessian, against_);
+  against_.u.clear();
   for (; raised <= most_raises; ++raised, shift = raised_shift(shift)) {
+    if (shift <= too_small) continue;
     ++factorisations;
-    const bool dense = model_.nodes < dense_nodes;
-    if (!(dense ? dense_.factor(hessian, shift) : cholesky_.factor(hessian, shift))) continue;
+    if (!(dense ? dense_.factor(hessian, shift, against) : cholesky_.factor(hessian, shift))) {
+      if (dense && !against.u.empty()) {
+        too_small = shift_against(hessian, against);
+        against_ = against;
+      }
+      continue;
+    }
     dense ? dense_.solve(gradient, step) : cholesky_.solve(gradient, step);
     ++iterations;
     current_ = true;

@@ -36,6 +36,9 @@ class StepSolver {
   Cholesky cholesky_;
   DenseCholesky dense_;
   Schwarz schwarz_;
+  // Along which the matrix was not positive when a dense factor last failed; empty: it did not, in the last
+  // step.
+  Unknowns against_;
   bool current_ = false;  // the factor at hand may serve as preconditioner
   double usual_ = 6;      // iterations that a fresh Schwarz factor took last to lower the residual e-fold
 };

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "base/wide.hpp"
 #include "mechanics/linear/block_matrix.hpp"
 
 namespace loopwright {
@@ -20,10 +21,22 @@ class UpperBlocks {
   // Control points of a segment, one behind the other in the fabric (not so where an endless yarn closes).
   static bool is_run(const FourNodes& n) { return n[3] == n[0] + 3 && n[1] == n[0] + 1 && n[2] == n[0] + 2; }
 
+  // Fetches what each_own() and each_between() will add to: the matrix is larger than the caches, its rows
+  // are far apart and come in no order, so that adding would wait for every one of them.
+  void fetch(const FourNodes& n) const {
+    for (const std::int32_t row : n)
+      if (owns(row)) fetch_run(on_diagonal(row));
+  }
+  void fetch_between(const FourNodes& a, const FourNodes& b) const {
+    const bool a_first = a[0] < b[0];
+    for (const std::int32_t row : a_first ? a : b)
+      if (owns(row)) fetch_run(place(row, a_first ? b[0] : a[0]));
+  }
+
   // Calls add(k, l, block, transposed) for the places of the blocks (n[k], n[l]), k <= l, in rows that are
   // ours; transposed: the upper triangle has (n[l], n[k]).
   template <class Add>
-  void each_own(const FourNodes& n, const Add& add) const {
+  LOOPWRIGHT_INLINE void each_own(const FourNodes& n, const Add& add) const {
     const bool run = is_run(n);
     if (run && owns(n[0]) && owns(n[3])) {
       for (std::size_t k = 0; k < 4; ++k) {
@@ -43,7 +56,7 @@ class UpperBlocks {
   // Calls add(k, l, block) for the places of the symmetric blocks (a[k], b[l]), twice for one on the
   // diagonal.
   template <class Add>
-  void each_between(const FourNodes& a, const FourNodes& b, const Add& add) const {
+  LOOPWRIGHT_INLINE void each_between(const FourNodes& a, const FourNodes& b, const Add& add) const {
     const bool runs = is_run(a) && is_run(b);
     if (runs && a[3] < b[0]) {
       for (std::size_t k = 0; k < 4; ++k) {
@@ -70,6 +83,13 @@ class UpperBlocks {
   }
 
  private:
+  // Four blocks one behind the other.
+  void fetch_run(std::size_t first) const {
+    constexpr std::ptrdiff_t line = 64;
+    const char* const from = reinterpret_cast<const char*>(matrix_.block.data() + first);
+    for (std::ptrdiff_t at = 0; at < static_cast<std::ptrdiff_t>(4 * sizeof(Block)); at += line)
+      __builtin_prefetch(from + at, 1);
+  }
   std::size_t on_diagonal(std::int32_t row) const {
     return static_cast<std::size_t>(diagonal_[static_cast<std::size_t>(row)]);
   }

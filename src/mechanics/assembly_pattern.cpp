@@ -32,8 +32,8 @@ void table_pattern(std::size_t nodes, const EachPair& each_pair, BlockMatrix& ma
 
 }  // namespace
 
-// Many: for each control point the segments that it carries, for each of these itself and its partners, for
-// each of them its four control points; what is new is kept, and a row is short enough to sort by insertion.
+// Many: a row has the control points of the segments that its own control point carries, and of their
+// partners. Segments are few and short lists of them quickly sorted; then their runs of four follow in order.
 void Assembly::listed_pattern(BlockMatrix& matrix) const {
   matrix.places.clear();
   const auto segments = static_cast<std::size_t>(model_.segments);
@@ -52,20 +52,18 @@ void Assembly::listed_pattern(BlockMatrix& matrix) const {
     partner[static_cast<std::size_t>(fill[static_cast<std::size_t>(p.b)]++)] = p.a;
   }
 
-  std::vector<std::int32_t> last_row(static_cast<std::size_t>(model_.nodes), -1);
+  std::vector<std::int32_t> last_row(segments, -1), near;
   std::vector<std::int32_t>& columns = matrix.column;
   columns.clear();
   columns.reserve(7 * static_cast<std::size_t>(model_.nodes) + 10 * active_.size());  // about what comes
   for (const YarnModel::Yarn& yarn : model_.yarns)
     for (int i = 0; i < yarn.nodes; ++i) {
       const std::int32_t row = yarn.first_node + i;
-      const auto begin = static_cast<std::ptrdiff_t>(columns.size());
-      const auto add_segment = [&](int e) {
-        for (const std::int32_t j : nodes_of(e)) {
-          if (last_row[static_cast<std::size_t>(j)] == row) continue;
-          last_row[static_cast<std::size_t>(j)] = row;
-          columns.push_back(j);
-        }
+      near.clear();
+      const auto add_segment = [&](std::int32_t e) {
+        if (last_row[static_cast<std::size_t>(e)] == row) return;
+        last_row[static_cast<std::size_t>(e)] = row;
+        near.push_back(e);
       };
       for (int back = 3; back >= 0; --back) {
         int e = i - back;
@@ -76,7 +74,20 @@ void Assembly::listed_pattern(BlockMatrix& matrix) const {
         for (auto k = start[static_cast<std::size_t>(e)]; k < start[static_cast<std::size_t>(e) + 1]; ++k)
           add_segment(partner[static_cast<std::size_t>(k)]);
       }
-      std::sort(columns.begin() + begin, columns.end());
+      std::sort(near.begin(), near.end());
+      const auto begin = static_cast<std::ptrdiff_t>(columns.size());
+      bool in_order = true;  // not where an endless yarn closes
+      for (const std::int32_t e : near) {
+        const FourNodes n = nodes_of(e);
+        in_order = in_order && UpperBlocks::is_run(n);
+        for (const std::int32_t j : n)
+          if (!in_order || static_cast<std::ptrdiff_t>(columns.size()) == begin || j > columns.back())
+            columns.push_back(j);
+      }
+      if (!in_order) {
+        std::sort(columns.begin() + begin, columns.end());
+        columns.erase(std::unique(columns.begin() + begin, columns.end()), columns.end());
+      }
       matrix.row_start[static_cast<std::size_t>(row) + 1] = static_cast<std::int32_t>(columns.size());
     }
   if (columns.capacity() > columns.size() + columns.size() / 4) columns.shrink_to_fit();

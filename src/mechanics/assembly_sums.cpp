@@ -217,8 +217,9 @@ void Assembly::add_contacts(Chunk& chunk) {
 
 // Friction: the contact's load, normal and place, weighted with the force of each sample. Its force and
 // Hessian are added to the contact's.
-Assembly::FrictionContact Assembly::add_friction(const SegmentPair& pair, const YarnState& state,
-                                                 ContactTerm& term) const {
+LOOPWRIGHT_WIDE Assembly::FrictionContact Assembly::add_friction(const SegmentPair& pair,
+                                                                 const YarnState& state,
+                                                                 ContactTerm& term) const {
   FrictionContact rub;
   const Vec3 push{term.push[0], term.push[1], term.push[2]};
   if (!(term.a.size > 0 && term.b.size > 0 && squared_norm(push) > 0)) return rub;

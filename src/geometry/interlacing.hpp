@@ -8,14 +8,21 @@ namespace loopwright {
 
 struct InterlacingCheck {
   int expected = 0, intact = 0;
+  int by_head = 0;          // of the intact ones, those that only the head's own surface shows (below)
   std::vector<int> broken;  // indices into Fabric::interlacings
 };
 
-// For every pair of parent and child: the signed number of passes of each half of the child's loop through a
-// surface spanned by the parent's head must be +1 and -1 for a front stitch, -1 and +1 for a rear stitch, in
-// the sense that the parent's own yarn direction gives to its head (so it holds in any attitude in space).
-// Yarn slides: the top of a head is found anew, by climbing from the fitted apex along the wale direction,
-// for slides up to 0.4 of a loop.
+// For every pair of parent and child: a linking number of each half of the child's loop with the parent's
+// must be +1 and -1 for a front stitch, -1 and +1 for a rear stitch, in the sense that the parent's own yarn
+// direction gives to its head (so it holds in any attitude in space). An open arc has no linking number; both
+// are closed along the wale at infinity, the parent's arc (from sinker to sinker) downward from its ends, the
+// halves of the child's loop (from the top of the loop before it in its course to its own, and from there to
+// the top of the loop after it) upward from theirs. Seen along the wale that is the signed number of
+// crossings at which the child's yarn is the lower one. It cannot change without yarn going through yarn or a
+// line along the wale from one of these ends, however far loops lean and whatever yarn slides, as long as the
+// top of the child's head stays between its feet and the parent's feet stay out of its arc's head (about 0.35
+// of a loop). Where that says no, passes through a fan of triangles across the parent's head, from neck to
+// neck, are counted instead: in the chain of a bind-off yarn beyond the head hangs over the ends.
 InterlacingCheck check_interlacings(const Fabric& fabric);
 
 struct Clearance {

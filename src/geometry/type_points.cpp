@@ -145,7 +145,10 @@ class LoopPlacer {
         points.push_back(point(id, LoopPart::leg, at_lower(id, ahead * 1.3, 3.1, sign.lower_leg + 0.6 * s)));
         leg(0.42, near_end * width, 1, shingle);
       } else {
-        leg(0.3, (lower ? far_end : near_end) * width, sign.early_rise, shingle);
+        // A leg that comes out on one side and is wanted on the other changes it before it passes a head
+        // beside its parent's, not below that head.
+        const bool passes_head = lower && s * c < 0 && has_head_below(id, lean);
+        leg(0.3, (lower ? far_end : near_end) * width, passes_head ? 0.8 : sign.early_rise, shingle);
       }
       if (!over_head) leg(0.5, (layout_.is_flat() ? 2 : 1) * width, 1, 0);
       leg(0.7, (lower ? near_end : far_end) * width, 1, -shingle);
@@ -157,6 +160,18 @@ class LoopPlacer {
       leg(0.5, 2, 0.5, 0);
     }
     head_half(id, side, head + high_share * sign.leg_offset, points);
+  }
+
+  // Whether a loop that leans passes over the head through which its neighbour in the yarn is drawn.
+  bool has_head_below(LoopId id, double lean) const {
+    const Loop& loop = graph_.loop(id);
+    const std::vector<LoopId>& yarn = graph_.yarns[loop.yarn.position()].loops;
+    const int beside = loop.order + ((lean > 0) == (loop.direction == Direction::right) ? 1 : -1);
+    if (beside < 0 || beside >= static_cast<int>(yarn.size())) return false;
+    const Vec3 to =
+        layout_.lower[yarn[static_cast<std::size_t>(beside)].position()] - layout_.lower[id.position()];
+    const double wales = (lean > 0 ? to.x : -to.x) / (8 * sx_);
+    return wales > 0.5 && wales < std::abs(lean) - 0.5 && std::abs(to.y) < 3.5 * sy_;
   }
 
   // Whether a loop that leans lies flat, as in the chain of a bind-off.

@@ -138,20 +138,38 @@ class LoopPlacer {
       const double aslant = std::clamp(3.6 * (1 - 2 * steep), 0.0, 1.0);
       const double shingle = (lower ? 0.6 : -0.6) * aslant;
       const double near_end = 2 - 1.35 * aslant, far_end = 2 - 1.15 * aslant;
+      const double ahead = lean > 0 ? 1 : -1;
       const bool over_head = !lower && sign.early_rise > 0.5 && std::abs(lean) > 1.5;
-      if (over_head) {
+      if (std::abs(lean) > 1.5 && std::abs(lean) < 2.5 && s * c > 0 && layout_.is_flat()) {
+        // Two wales away, on one side: both legs pass those of a loop beside it that goes the same
+        // way, and the heads that both were drawn through. The lower one leaves above the middle line, so
+        // that it clears those heads, and runs below it toward its own head, under the loop beside; the upper
+        // one leaves over its parents' heads and lies over the other where they come to their head.
+        if (lower) {
+          leg(0.3, -0.6 * width, sign.early_rise, 0.5 * s);
+          leg(0.5, 1.2 * width, 1, -0.2 * s);
+          leg(0.7, 1.8 * width, 1, -0.8 * s);
+        } else {
+          points.push_back(point(id, LoopPart::leg,
+                                 at_lower(id, ahead, 2.4, sign.lower_leg + low_share * sign.leg_offset)));
+          leg(0.42, 1.1 * width, 1, -0.2 * s);
+          leg(0.7, 0.8 * width, 1, 1.4 * s);
+        }
+      } else if (over_head) {
         // The upper leg leaves over its parents' heads before it changes the side.
-        const double ahead = lean > 0 ? 1 : -1;
         points.push_back(point(id, LoopPart::leg, at_lower(id, ahead * 1.3, 3.1, sign.lower_leg + 0.6 * s)));
         leg(0.42, near_end * width, 1, shingle);
+        leg(0.7, far_end * width, 1, -shingle);
       } else {
         // A leg that comes out on one side and is wanted on the other changes it before it passes a head
         // beside its parent's, not below that head.
-        const bool passes_head = lower && s * c < 0 && has_head_below(id, lean);
-        leg(0.3, (lower ? far_end : near_end) * width, passes_head ? 0.8 : sign.early_rise, shingle);
+        if (lower && s * c < 0 && has_head_below(id, lean))
+          leg(0.3, -0.8 * width, 1, 0);
+        else
+          leg(0.3, (lower ? far_end : near_end) * width, sign.early_rise, shingle);
+        leg(0.5, (layout_.is_flat() ? 2 : 1) * width, 1, 0);
+        leg(0.7, (lower ? near_end : far_end) * width, 1, -shingle);
       }
-      if (!over_head) leg(0.5, (layout_.is_flat() ? 2 : 1) * width, 1, 0);
-      leg(0.7, (lower ? near_end : far_end) * width, 1, -shingle);
     } else if (graph_.loop(id).head_count > 1) {
       const bool room = own.high.y - own.low.y > 5.5 * sy_;
       if (room) leg(0.35, 1.8, 0.2, 0);

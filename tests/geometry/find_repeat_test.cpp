@@ -158,6 +158,27 @@ TEST(FindRepeat, FindsNoneWhereThereIsNone) {
   EXPECT_FALSE(find_repeat(knitted.graph, LoopSelection(knitted.graph.loops.size(), 0)));
 }
 
+// Sixty wales and courses in the middle of a swatch of KnitDB.
+LoopSelection measured_part(const YarnGraph& graph) {
+  int low = 1 << 30, high = -low;
+  std::vector<int> passes;
+  for (const Loop& loop : graph.loops) {
+    low = std::min(low, static_cast<int>(loop.slot)), high = std::max(high, static_cast<int>(loop.slot));
+    passes.push_back(loop.pass);
+  }
+  std::sort(passes.begin(), passes.end());
+  passes.erase(std::unique(passes.begin(), passes.end()), passes.end());
+  LoopSelection inside(graph.loops.size(), 0);
+  for (std::size_t i = 0; i < inside.size(); ++i) {
+    const Loop& loop = graph.loops[i];
+    inside[i] =
+        loop.slot >= low + 12 && loop.slot < low + 72 && loop.pass >= passes[15] && loop.pass <= passes[74]
+            ? 1
+            : 0;
+  }
+  return inside;
+}
+
 TEST(FindRepeat, EverySwatchOfTheCorpusHasAWholeCell) {
   const char* set = std::getenv("LOOPWRIGHT_CORPUS");
   const std::filesystem::path folder =
@@ -168,25 +189,7 @@ TEST(FindRepeat, EverySwatchOfTheCorpusHasAWholeCell) {
     if (entry.path().extension() != ".knitout") continue;
     Diagnostics diagnostics(entry.path().string());
     const Knitted knitted = run(read_program(entry.path(), diagnostics), diagnostics);
-    // Sixty wales and courses in the middle.
-    int first = 1 << 30, last = -first, low = first, high = last;
-    for (const Loop& loop : knitted.graph.loops) {
-      first = std::min(first, loop.pass), last = std::max(last, loop.pass);
-      low = std::min(low, static_cast<int>(loop.slot)), high = std::max(high, static_cast<int>(loop.slot));
-    }
-    std::vector<int> passes;
-    for (const Loop& loop : knitted.graph.loops) passes.push_back(loop.pass);
-    std::sort(passes.begin(), passes.end());
-    passes.erase(std::unique(passes.begin(), passes.end()), passes.end());
-    LoopSelection inside(knitted.graph.loops.size(), 0);
-    for (std::size_t i = 0; i < inside.size(); ++i) {
-      const Loop& loop = knitted.graph.loops[i];
-      inside[i] =
-          loop.slot >= low + 12 && loop.slot < low + 72 && loop.pass >= passes[15] && loop.pass <= passes[74]
-              ? 1
-              : 0;
-    }
-    const auto repeat = find_repeat(knitted.graph, inside);
+    const auto repeat = find_repeat(knitted.graph, measured_part(knitted.graph));
     ASSERT_TRUE(repeat) << entry.path().filename();
     EXPECT_LE(repeat->range.wales, 30) << entry.path().filename();
     const InterlacingCheck check = check_interlacings(cell_of(knitted, *repeat));
@@ -196,6 +199,32 @@ TEST(FindRepeat, EverySwatchOfTheCorpusHasAWholeCell) {
     ++swatches;
   }
   EXPECT_GE(swatches, 46);
+}
+
+// Loops that go two needles aside beside each other, and across others: their legs keep clear of each other,
+// or no step from the first geometry can be certified. With the yarn and the loops of those swatches.
+TEST(FindRepeat, LegsOfCablesHaveRoom) {
+  const char* set = std::getenv("LOOPWRIGHT_CORPUS");
+  const std::filesystem::path folder =
+      std::filesystem::path(set ? set : LOOPWRIGHT_CORPUS_DEFAULT) / "knitdb";
+  if (!std::filesystem::is_directory(folder)) GTEST_SKIP() << "the corpus is not there: " << folder;
+  for (const auto& [name, least] : {std::pair{"23_1_085InterlockingDiagonals", 0.1},
+                                    {"18_2_075Chain", 0.12},
+                                    {"11_2_039TexturedTrellis", 0.1},
+                                    {"25_2_097DiagonalDiamond", 0.045},
+                                    {"64_3_090Iceberg", 0.04}}) {
+    Diagnostics diagnostics;
+    Program program = read_program(folder / (std::string(name) + ".knitout"), diagnostics);
+    program.settings.gauge_npi = 15;
+    program.settings.loop_length_mm = 6.53;
+    program.settings.bed_change_mm = 1.39;
+    for (YarnData& yarn : program.yarns) yarn.diameter_mm = 0.8;
+    const Knitted knitted = run(std::move(program), diagnostics);
+    const auto repeat = find_repeat(knitted.graph, measured_part(knitted.graph));
+    ASSERT_TRUE(repeat) << name;
+    const Fabric cell = cell_of(knitted, *repeat);
+    EXPECT_GT(min_clearance(cell).distance, least) << name;
+  }
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "base/stop.hpp"
+#include "geometry/head_reading.hpp"
 #include "geometry/loop_arcs.hpp"
 
 namespace loopwright {
@@ -83,58 +84,6 @@ class Curtain {
   Vec3 low_{infinity, infinity, infinity}, high_{-infinity, -infinity, -infinity};
 };
 
-// A loop's head closed across its neck, with a fan of triangles about its middle.
-class Fan {
- public:
-  Fan(const LoopArc& loop, double half) {
-    constexpr double neck = 0.76;  // of half a loop, from its top
-    const auto reach = [&](int of) {
-      return static_cast<int>(std::lround(neck * std::min<double>(of, half)));
-    };
-    const int first = loop.apex - reach(loop.apex - loop.begin);
-    const int last = loop.apex + reach(loop.end - loop.apex);
-    for (int i = first; i <= last; ++i) rim_.push_back(loop.yarn->at(i));
-    // The middle of the head, where children are drawn through, so that the surface stays near the head's
-    // plane even where the legs lean away or change the side.
-    const std::size_t legs = rim_.size() / 4;
-    for (std::size_t i = legs; i < rim_.size() - legs; ++i) centre_ += rim_[i];
-    centre_ = centre_ / static_cast<double>(rim_.size() - 2 * legs);
-  }
-
-  // Signed as the curtain's. A zero counts as positive everywhere, by the same value for all triangles that
-  // share it, so that a pass through an edge or a corner counts once.
-  int passes(const SampledYarn& yarn, int first, int last, const Vec3& moved) const {
-    int sum = 0;
-    for (int i = first; i < last; ++i) sum += passes(yarn.at(i) + moved, yarn.at(i + 1) + moved);
-    return sum;
-  }
-
- private:
-  int passes(const Vec3& p, const Vec3& q) const {
-    const Vec3 along = q - p, spoke_normal = cross(along, centre_ - p);
-    const auto spoke = [&](const Vec3& a) { return dot(spoke_normal, a - p) >= 0; };
-    int sum = 0;
-    bool before = spoke(rim_.back());
-    for (std::size_t i = 0; i < rim_.size(); ++i) {
-      const Vec3& a = i > 0 ? rim_[i - 1] : rim_.back();
-      const Vec3& b = rim_[i];
-      const bool after = spoke(b);
-      const bool spoke_a = before;
-      before = after;
-      if (spoke_a == after) continue;  // the line must see the two spokes on different sides
-      const bool rim_side = dot(cross(along, a - p), b - p) >= 0;
-      if (rim_side != spoke_a) continue;
-      const Vec3 normal = cross(a - centre_, b - centre_);
-      const bool p_above = dot(normal, p - centre_) >= 0, q_above = dot(normal, q - centre_) >= 0;
-      if (p_above != q_above) sum += q_above ? -1 : 1;
-    }
-    return sum;
-  }
-
-  std::vector<Vec3> rim_;
-  Vec3 centre_;
-};
-
 // A parent, and a child at its lattice image.
 class Pair {
  public:
@@ -154,28 +103,21 @@ class Pair {
       return beside == LoopImage{interlacing.parent} ||
              std::find(parent.children.begin(), parent.children.end(), beside) != parent.children.end();
     };
-    first_ = is_related(child.before) ? child.begin : child.apex_before;
-    last_ = is_related(child.after) ? child.end : child.apex_after;
+    is_related_before_ = is_related(child.before), is_related_after_ = is_related(child.after);
+    first_ = is_related_before_ ? child.begin : child.apex_before;
+    last_ = is_related_after_ ? child.end : child.apex_after;
   }
 
   bool is_linked() const {
     return is_possible_ && passes_both_ways(Curtain(parent_, arcs_.wale_at(parent_)), first_, last_);
   }
-  // The foot of a child that lies flat (the chain of a bind-off) soon runs below other yarn of its parent, so
-  // that only the head can be looked at.
   bool is_linked_in_head() const {
-    constexpr double foot_reach = 1.12;  // of half a loop, from the top of the child's head
-    const auto half = [&](const LoopArc& arc) { return arcs_.usual_half() * arc.yarn->per_length(); };
-    const Fan fan(parent_, half(parent_));
-    const int reach = static_cast<int>(foot_reach * half(child_));
-    return is_possible_ && (passes_both_ways(fan, std::max(child_.begin, child_.apex - reach),
-                                             std::min(child_.end, child_.apex + reach)) ||
-                            passes_both_ways(fan, first_, last_));
+    return is_possible_ &&
+           passes_head(arcs_, parent_, child_, moved_, sense_, !is_related_before_, !is_related_after_);
   }
 
  private:
-  template <class Surface>
-  bool passes_both_ways(const Surface& surface, int first, int last) const {
+  bool passes_both_ways(const Curtain& surface, int first, int last) const {
     return sense_ * surface.passes(*child_.yarn, first, child_.apex, moved_) == 1 &&
            sense_ * surface.passes(*child_.yarn, child_.apex, last, moved_) == -1;
   }
@@ -184,7 +126,7 @@ class Pair {
   const LoopArc &parent_, &child_;
   Vec3 moved_;
   int sense_, first_ = 0, last_ = 0;
-  bool is_possible_;
+  bool is_possible_, is_related_before_ = false, is_related_after_ = false;
 };
 
 }  // namespace

@@ -8,7 +8,7 @@ namespace loopwright {
 
 struct InterlacingCheck {
   int expected = 0, intact = 0;
-  int by_head = 0;          // of the intact ones, those that only the head's own surface shows (below)
+  int by_head = 0;          // of the intact ones, those that only the parent's head alone shows (below)
   std::vector<int> broken;  // indices into Fabric::interlacings
 };
 
@@ -21,8 +21,8 @@ struct InterlacingCheck {
 // crossings at which the child's yarn is the lower one. It cannot change without yarn going through yarn or a
 // line along the wale from one of these ends, however far loops lean and whatever yarn slides, as long as the
 // top of the child's head stays between its feet and the parent's feet stay out of its arc's head (about 0.35
-// of a loop). Where that says no, passes through a fan of triangles across the parent's head, from neck to
-// neck, are counted instead: in the chain of a bind-off yarn beyond the head hangs over the ends.
+// of a loop). Where that says no, yarn beyond the pair hangs over the ends (the chain of a bind-off, held
+// loops with tucks): then the parent's head alone is looked at (head_reading.hpp).
 InterlacingCheck check_interlacings(const Fabric& fabric);
 
 struct Clearance {

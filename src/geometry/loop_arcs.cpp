@@ -67,6 +67,7 @@ void LoopArcs::add_yarn(const Fabric& fabric, std::size_t first, std::size_t pas
     arc.begin = sample(span.begin), arc.apex = sample(span.apex), arc.end = sample(span.end);
     arc.apex_before = arc.begin, arc.apex_after = arc.end;
     arc.direction = span.direction;
+    arc.is_tuck = span.kind == LoopKind::tuck;
     // The yarn of a cell goes on in the next image.
     const bool is_first = k == first, is_last = k + 1 == past;
     if (!is_first || yarn.periodic) {

@@ -38,6 +38,7 @@ struct LoopArc {
   int apex_before = 0, apex_after = 0;
   LoopImage before, after;
   Direction direction = Direction::right;
+  bool is_tuck = false;
   std::vector<LoopImage> children;
 };
 

@@ -10,7 +10,6 @@ namespace {
 // Of a loop's length, from its top: where the neck of its head is, how far its foot reaches, how far yarn may
 // slide.
 constexpr double neck = 0.38, foot_reach = 0.56, most_slide = 0.42, climb_window = 0.1, next_foot = 0.5;
-constexpr double leaning_head = 0.15;
 constexpr double tuck_skirt = 0.12;  // how far below a tuck its surface reaches
 
 // A loop's head closed across its neck, with a fan of triangles about its middle.
@@ -117,17 +116,9 @@ bool passes_head(const LoopArcs& arcs, const LoopArc& parent, const LoopArc& chi
     return sense * fan.passes(*child.yarn, first, child_at, moved) == 1 &&
            sense * fan.passes(*child.yarn, child_at, last, moved) == -1;
   };
-  // Either head may have slid without the other. Where a loop leans (lace) its top is not where its head is:
-  // the parent's is looked for a little to both sides as well.
-  const int aside = static_cast<int>(leaning_head * loop);
-  const std::array<std::array<int, 2>, 8> readings{{{parent.apex, child.apex},
-                                                    {head, child_head},
-                                                    {parent.apex, child_head},
-                                                    {head, child.apex},
-                                                    {parent.apex - aside, child.apex},
-                                                    {parent.apex + aside, child.apex},
-                                                    {head - aside, child_head},
-                                                    {head + aside, child_head}}};
+  // Either head may have slid without the other.
+  const std::array<std::array<int, 2>, 4> readings{
+      {{parent.apex, child.apex}, {head, child_head}, {parent.apex, child_head}, {head, child.apex}}};
   for (const bool beyond : {false, true})
     for (const auto& [at, child_at] : readings)
       if (passes_at(at, child_at, beyond, false) || (parent.is_tuck && passes_at(at, child_at, beyond, true)))

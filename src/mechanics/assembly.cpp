@@ -122,6 +122,11 @@ void Assembly::accept(const YarnState& state) {
       remembered_.push_back({contact.a, contact.b, contact.m, contact.n, contact.law.slip});
 }
 
+EnergyParts Assembly::energy(const YarnState& state, std::vector<double>& of_segments) {
+  of_segments.assign(static_cast<std::size_t>(model_.segments), 0);
+  return terms(state, nullptr, nullptr, &of_segments);
+}
+
 EnergyParts Assembly::energy(const YarnState& state) {
   EnergyParts parts = terms(state, nullptr, nullptr);
   for (const FrictionContact& contact : friction_)
@@ -133,7 +138,8 @@ EnergyParts Assembly::hessian(const YarnState& state, Unknowns& gradient, BlockM
   return terms(state, &gradient, &hessian);
 }
 
-void Assembly::metric(BlockMatrix& matrix) const {
+void Assembly::metric(BlockMatrix& matrix, const std::vector<float>& weights) const {
+  constexpr double own_reach = 10;     // d
   constexpr double own_motion = 1e-3;  // keeps rigid motion and the sliding of whole yarns finite
   matrix.metric.assign(matrix.column.size(), 0);
   const auto add_to = [&](std::int32_t i, std::int32_t j, double v) {
@@ -143,42 +149,50 @@ void Assembly::metric(BlockMatrix& matrix) const {
     matrix.metric[matrix.place(i, j)] += v;
   };
   const auto base_of = [&](std::size_t k) { return model_.base[k]; };
-  for (std::int32_t i = 0; i < model_.nodes; ++i) add_to(i, i, own_motion);
+  const auto weight = [&](std::int32_t i) {
+    return weights.empty() ? 1.0 : static_cast<double>(weights[static_cast<std::size_t>(i)]);
+  };
+  for (std::int32_t i = 0; i < model_.nodes; ++i) add_to(i, i, own_motion * weight(i));
   for (const YarnModel::Yarn& yarn : model_.yarns) {
     const int links = yarn.periodic ? yarn.nodes : yarn.nodes - 1;
     for (int k = 0; k < links; ++k) {
       const auto i = base_of(static_cast<std::size_t>(yarn.first_extended + k)),
                  j = base_of(static_cast<std::size_t>(yarn.first_extended + k + 1));
-      add_to(i, i, 1);
-      add_to(j, j, 1);
-      add_to(i, j, -1);
-      add_to(j, i, -1);
+      const double w = std::max(weight(i), weight(j));
+      add_to(i, i, w);
+      add_to(j, j, w);
+      add_to(i, j, -w);
+      add_to(j, i, -w);
     }
   }
   // Segments in contact: relative motion of their middles (weights 1/48, 23/48, 23/48, 1/48).
   constexpr std::array<double, 4> middle{1 / 48.0, 23 / 48.0, 23 / 48.0, 1 / 48.0};
-  const auto add_middles = [&](const FourNodes& rows, const FourNodes& columns, double sign) {
+  const auto add_middles = [&](const FourNodes& rows, const FourNodes& columns, double factor) {
     const bool run = UpperBlocks::is_run(columns);  // then they lie one behind the other in every row
     for (std::size_t k = 0; k < 4; ++k) {
       if (model_.held[static_cast<std::size_t>(rows[k])]) continue;
       const std::size_t first = matrix.place(rows[k], columns[0]);
       for (std::size_t l = 0; l < 4; ++l)
         if (!model_.held[static_cast<std::size_t>(columns[l])])
-          matrix.metric[run ? first + l : matrix.place(rows[k], columns[l])] += sign * middle[k] * middle[l];
+          matrix.metric[run ? first + l : matrix.place(rows[k], columns[l])] +=
+              factor * middle[k] * middle[l];
     }
   };
   for (const std::int32_t at : active_) {
     const SegmentPair& pair = pairs_[static_cast<std::size_t>(at)];
-    if (pair.same_yarn) continue;
+    // The yarn's own links tell what lies near along it.
+    if (pair.same_yarn && (model_.periodic || std::abs(pair.arc_offset) < own_reach)) continue;
     const FourNodes a = nodes_of(pair.a), b = nodes_of(pair.b);
-    add_middles(a, a, 1);
-    add_middles(b, b, 1);
-    add_middles(a, b, -1);
-    add_middles(b, a, -1);
+    const double more = std::max(weight(a[1]), weight(b[1]));
+    add_middles(a, a, more);
+    add_middles(b, b, more);
+    add_middles(a, b, -more);
+    add_middles(b, a, -more);
   }
 }
 
-EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMatrix* matrix) {
+EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMatrix* matrix,
+                            std::vector<double>* of_segments) {
   prepare(state);
   const auto nodes = static_cast<std::size_t>(model_.nodes);
   const std::vector<Fraction> node_fraction = fractions(state);
@@ -208,6 +222,7 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
     chunk.state = &state;
     chunk.gradient = gradient;
     chunk.matrix = matrix;
+    chunk.of_segments = of_segments;
     add_segments(chunk);
     add_contacts(chunk);
   });

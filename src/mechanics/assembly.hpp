@@ -37,6 +37,8 @@ class Assembly {
 
   // Infinite where two samples are inside a core.
   EnergyParts energy(const YarnState& state);
+  // The same, and [segment] what of it is stretch, bend and contact, of a pair at its first segment.
+  EnergyParts energy(const YarnState& state, std::vector<double>& of_segments);
   // Gradient (zero for what is held) and full Hessian; rows and columns of what is held are those of the
   // identity. Only for the state that update_pairs() was last given: the pattern holds the pairs that are in
   // contact there. With friction this also takes down every contact's load, normal and place: until the next
@@ -56,7 +58,8 @@ class Assembly {
   // along the yarn and of segments in contact, plus a little of the motion itself. What makes a step untrue
   // is turning of yarn and sliding of contacts, so rigid and long-wave motion is all but free and step counts
   // need not grow with the piece.
-  void metric(BlockMatrix& hessian) const;
+  // `weights`: [control point] how many times more its motion against others counts; empty: once.
+  void metric(BlockMatrix& hessian, const std::vector<float>& weights = {}) const;
 
   // Places of contact samples in the last state given.
   const SamplePlaces& places() const { return places_; }
@@ -75,7 +78,8 @@ class Assembly {
     Friction law;
   };
   struct Chunk;
-  EnergyParts terms(const YarnState& state, Unknowns* gradient, BlockMatrix* hessian);
+  EnergyParts terms(const YarnState& state, Unknowns* gradient, BlockMatrix* hessian,
+                    std::vector<double>* of_segments = nullptr);
   FourNodes nodes_of(int segment) const;
   bool touches(const Chunk& chunk, int segment) const;
   void gather(const std::int32_t* segments, std::size_t count, bool fractions, SegmentLanes& to) const;

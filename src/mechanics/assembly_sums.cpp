@@ -117,6 +117,8 @@ void Assembly::add_segments(Chunk& chunk) const {
       if (!chunk.owns(nodes_of(group[lane])[0])) continue;
       chunk.energy.stretch += term.stretch[lane];
       chunk.energy.bend += term.bend[lane];
+      if (chunk.of_segments)
+        (*chunk.of_segments)[static_cast<std::size_t>(group[lane])] += term.stretch[lane] + term.bend[lane];
     }
     count = 0;
   };
@@ -196,7 +198,9 @@ void Assembly::add_contacts(Chunk& chunk) {
     if (!contact_input(pair, chunk.state->lattice(pair.m, pair.n), reach, in)) continue;
     const ContactLaw law = scale == 1 ? model_.contact : model_.contact.scaled(scale);
     if (!chunk.matrix) {
-      chunk.energy.contact += contact_energy(in, law);
+      const double energy = contact_energy(in, law);
+      chunk.energy.contact += energy;
+      if (chunk.of_segments) (*chunk.of_segments)[static_cast<std::size_t>(pair.a)] += energy;
       continue;
     }
     const UpperBlocks upper(*chunk.matrix, diagonal_, chunk.low, chunk.high);

@@ -4,19 +4,14 @@
 #include <cmath>
 #include <utility>
 
-#include "mechanics/linear/step_solver.hpp"
-#include "mechanics/safe_step.hpp"
+#include "mechanics/step_search.hpp"
 
 namespace loopwright {
 namespace {
 
-constexpr double gap_share = 0.7;    // of the gap of two pieces of yarn that one step may use up
 constexpr double least_loose = 0.6;  // how far past contact the pair list reaches at least and at most, in d
 constexpr double most_loose = 2.4;
-constexpr double enough_decrease = 1e-4;  // Armijo's constant
-constexpr int most_cuts = 40;
 constexpr double least_first_shift = 1e-5;
-constexpr int many_nodes = 8000;
 
 double largest_force(const Unknowns& g) {
   double largest = 0;
@@ -28,37 +23,13 @@ double largest_measure_force(const Unknowns& g) {
   return std::max({std::abs(g.g[0]), std::abs(g.g[1]), std::abs(g.g[2])});
 }
 
-// A step cut so that it is safe and lowers the energy. scale = 0: none was found.
-struct TakenStep {
-  YarnState state;
-  SafeStep safe;
-  double scale = 0, energy = 0;
-  int cuts = 0;
-};
-
-TakenStep take_step(const YarnModel& model, Assembly& assembly, const YarnState& state, const Unknowns& step,
-                    double energy, double slope, double range) {
-  TakenStep taken;
-  taken.safe = safe_step(model, assembly, state, assembly.moved(state, step, 1), range, model.contact.outer,
-                         gap_share);
-  for (double scale = taken.safe.scale; taken.cuts < most_cuts; ++taken.cuts, scale *= 0.5) {
-    taken.state = assembly.moved(state, step, scale);
-    taken.energy = assembly.energy(taken.state).total();
-    if (taken.energy <= energy + enough_decrease * scale * slope + 1e-13 * std::abs(energy)) {
-      taken.scale = scale;
-      break;
-    }
-  }
-  return taken;
-}
-
 // The next shift: smaller after a full step that the quadratic model foretold well, larger after a poor one.
-double next_shift(double shift, const TakenStep& taken, double energy, double slope, int raised) {
-  const double predicted = -taken.scale * slope * (1 - 0.5 * taken.scale);
+double next_shift(double shift, const TakenStep& taken, double energy) {
+  const double predicted = -taken.scale * taken.slope * (1 - 0.5 * taken.scale);
   const double gain = predicted > 0 ? (energy - taken.energy) / predicted : 1;
-  if (taken.scale > 0.9 && gain > 0.5) return std::max(raised == 0 ? 0.1 * shift : 0.5 * shift, 1e-9);
+  if (taken.scale > 0.9 && gain > 0.5) return std::max(taken.raised == 0 ? 0.1 * shift : 0.5 * shift, 1e-9);
   if (taken.scale < 0.1 || gain < 0.1) return std::max(3 * shift, 1e-6);
-  return raised == 0 && taken.scale > 0.4 ? 0.5 * shift : shift;
+  return taken.raised == 0 && taken.scale > 0.4 ? 0.5 * shift : shift;
 }
 
 }  // namespace
@@ -68,9 +39,10 @@ NewtonResult newton(const YarnModel& model, YarnState& state, const NewtonOption
   NewtonResult result;
   Assembly assembly(model);
   if (history) assembly.set_history(std::move(*history));
-  StepSolver solver(model);
+  StepSearch search(model, assembly);
   BlockMatrix hessian;
-  Unknowns gradient, step;
+  Unknowns gradient;
+  TakenStep taken;
   const double outer = model.contact.outer;
   double shift = first_shift, loose = least_loose;
 
@@ -86,26 +58,17 @@ NewtonResult newton(const YarnModel& model, YarnState& state, const NewtonOption
       result.stopped = true;
     if (result.converged || result.stopped || result.iterations >= options.most_iterations) break;
     // A large piece that starts near rest needs no large shift, and would take costly steps to be rid of it.
-    if (result.iterations == 0 && model.nodes > many_nodes)
+    if (result.iterations == 0 && search.is_large())
       shift = std::min(shift, std::max(result.residual, least_first_shift));
 
-    const bool large = model.nodes > many_nodes;
-    if (large) assembly.drop_places();
-    assembly.metric(hessian);
-    hessian.measure_metric = {1, 1, 1};
-    const double accuracy = std::clamp(0.3 * result.residual, 1e-3, 0.05);
-    const StepSolver::Report solve = solver.solve(hessian, state, gradient, accuracy, shift, step);
-    if (!solve.solved) break;
-    if (large) hessian = BlockMatrix{};  // much of what is held, and not needed until the next step
-
-    const double energy = result.energy.total(), slope = dot(gradient, step);
-    TakenStep taken = take_step(model, assembly, state, step, energy, slope, range);
+    const double energy = result.energy.total();
+    if (!search.take({state, gradient, energy, result.residual, range}, hessian, shift, taken)) break;
     if (taken.scale == 0) {
       if (shift > 1e12) break;
       shift = std::max(16 * shift, 1e-3);
       continue;
     }
-    shift = next_shift(shift, taken, energy, slope, solve.raised);
+    shift = next_shift(shift, taken, energy);
     // A step held back by the pair list's reach alone: look farther next time.
     const bool short_sighted = taken.safe.loose_motion * taken.safe.scale > 0.4 * (range - outer) &&
                                taken.safe.pair_ratio * taken.safe.scale < 0.4;
@@ -119,8 +82,8 @@ NewtonResult newton(const YarnModel& model, YarnState& state, const NewtonOption
   }
   if (history) *history = assembly.history();
   result.shift = shift;
-  result.factorisations = solver.factorisations;
-  result.linear_iterations = solver.iterations;
+  result.factorisations = search.solver().factorisations;
+  result.linear_iterations = search.solver().iterations;
   return result;
 }
 

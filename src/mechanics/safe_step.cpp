@@ -21,12 +21,14 @@ struct AffineMotion {
   double in_plane = 0, across = 0;  // norms of the columns x, y of T, and of its column z
   double thickness = 0;             // of the fabric along z
   double loose = 0;                 // the largest motion that is left
+  std::vector<FarNode> far;         // those that move more than they may
 };
 
 // Pieces: least squares over control points; their 4 x 4 moment matrix is solved by Gaussian elimination with
 // a small ridge (flat pieces have no z extent). Periodic cells: the lattice's own map, so that what is left
 // is the same in every image, and least squares for z alone.
-AffineMotion affine_motion(const YarnState& state, const YarnState& target, bool periodic) {
+// `limit`: motions beyond it are listed.
+AffineMotion affine_motion(const YarnState& state, const YarnState& target, bool periodic, double limit) {
   const std::size_t n = state.nodes.size();
   Vec3 centre;
   for (const Vec3& p : state.nodes) centre += p;
@@ -68,8 +70,11 @@ AffineMotion affine_motion(const YarnState& state, const YarnState& target, bool
     const Vec3 p = state.nodes[i] - centre;
     low = std::min(low, p.z);
     high = std::max(high, p.z);
-    motion.loose = std::max(motion.loose, squared_norm(left(i) - p.x * column[0] - p.y * column[1] -
-                                                       p.z * column[2] - column[3]));
+    const double loose2 =
+        squared_norm(left(i) - p.x * column[0] - p.y * column[1] - p.z * column[2] - column[3]);
+    motion.loose = std::max(motion.loose, loose2);
+    if (loose2 > limit * limit)
+      motion.far.push_back({static_cast<std::int32_t>(i), std::sqrt(loose2) / limit});
   }
   motion.loose = std::sqrt(motion.loose);
   motion.thickness = high - low;
@@ -184,7 +189,8 @@ double stick_distance2(const Vec3& d, const Vec3& a, const Vec3& b) {
 }  // namespace
 
 SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnState& state,
-                   const YarnState& target, double range, double outer_diameter, double share) {
+                   const YarnState& target, double range, double outer_diameter, double share,
+                   bool list_causes) {
   std::vector<Vec3> extended;
   SamplePlaces from, to;
   expand(model, state, extended);
@@ -200,6 +206,7 @@ SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnS
   struct Worst {
     double ratio2 = smallest_ratio * smallest_ratio, gap2 = std::numeric_limits<double>::infinity();
     int a = -1, b = -1;
+    std::vector<NearPair> near;
   };
   std::vector<Worst> worst(static_cast<std::size_t>(chunks));
   parallel_chunks(chunks, [&](int c) {
@@ -219,7 +226,12 @@ SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnS
                           &other_motion = motions[static_cast<std::size_t>(pair.b)];
       const SampleBox& other_box = from.boxes[static_cast<std::size_t>(pair.b)];
       const double halves = one_motion.half + other_motion.half, turns = one_motion.turn + other_motion.turn;
-      const auto bound = [&] { return StickBound{halves, turns, std::sqrt(w.ratio2)}; };
+      // Where all near pairs are wanted, none of them may hide behind a worse one.
+      const double most_known2 = list_causes ? share * share : std::numeric_limits<double>::infinity();
+      const auto bound = [&] {
+        return StickBound{halves, turns, std::sqrt(std::min(w.ratio2, most_known2))};
+      };
+      double ratio2 = 0;  // of this pair
       StickBound known = bound();
       if (known.harmless(pair.distance2, most_motion2)) return;
       const SampleView others{&from.x[j0], &from.y[j0], &from.z[j0]},
@@ -253,6 +265,7 @@ SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnS
           // Yarn bends away from its sticks: see `bent_away`. Below twice that half the gap is left for it.
           const double gap = std::sqrt(gap2), room = std::max(std::max(gap - bent_away, 0.5 * gap), 1e-9);
           const double room2 = room * room;
+          ratio2 = std::max(ratio2, motion * motion / room2);
           if (motion * motion > w.ratio2 * room2) {
             w.ratio2 = motion * motion / room2;
             w.a = pair.a;
@@ -261,6 +274,7 @@ SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnS
           }
         }
       }
+      if (list_causes && ratio2 > share * share) w.near.push_back({pair.a, pair.b, std::sqrt(ratio2)});
     };
     // The pair with the most motion for its distance goes first. It is nearly always the worst, and most
     // others are then seen to be harmless at once.
@@ -286,18 +300,22 @@ SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnS
   SafeStep result;
   double ratio2 = smallest_ratio * smallest_ratio;
   for (const Worst& w : worst) result.surely_apart = result.surely_apart && w.gap2 > bent_away * bent_away;
-  for (const Worst& w : worst)
+  for (Worst& w : worst) {
+    result.near.insert(result.near.end(), w.near.begin(), w.near.end());
     if (w.ratio2 > ratio2) {
       ratio2 = w.ratio2;
       result.worst_a = w.a;
       result.worst_b = w.b;
     }
+  }
   result.pair_ratio = std::sqrt(ratio2);
-  const AffineMotion affine = affine_motion(state, target, model.periodic);
-  result.loose_motion = affine.loose;
   // Pairs outside the list stay outside contact: each of the two may move by less than half of what parts
   // them from it.
   const double loose_limit = 0.45 * (range - outer_diameter);
+  AffineMotion affine = affine_motion(state, target, model.periodic,
+                                      list_causes ? loose_limit : std::numeric_limits<double>::infinity());
+  result.loose_motion = affine.loose;
+  result.far = std::move(affine.far);
   if (result.pair_ratio > share) result.scale = share / result.pair_ratio;
   if (result.loose_motion * result.scale > loose_limit) result.scale = loose_limit / result.loose_motion;
   // An affine map moves no yarn through another as long as it does not flatten space. Over a distance D >=

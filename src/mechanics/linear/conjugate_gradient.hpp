@@ -13,6 +13,8 @@ struct ConjugateGradientResult {
   bool converged = false;
   bool indefinite = false;  // a direction of negative curvature was met: A + shift D is not positive definite
   int iterations = 0;
+  std::vector<std::int32_t>
+      bent;              // then the control points that give it nine tenths of its negative curvature
   double reduction = 1;  // what is left of the residual that it started from
 };
 

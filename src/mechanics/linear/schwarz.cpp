@@ -89,6 +89,20 @@ BlockMatrix patch_matrix(const BlockMatrix& matrix, const std::vector<std::int32
   return m;
 }
 
+// Coarse spaces only help on; where theirs is not definite, its diagonal is raised until it is, and conjugate
+// gradients find where the matrix bends.
+bool factor_raised(BlockMatrix& seen, Cholesky& factor) {
+  constexpr int most_raises = 6;
+  for (int k = 0; k <= most_raises; ++k) {
+    if (factor.factor(seen, 0)) return true;
+    for (std::int32_t r = 0; r < seen.rows(); ++r) {
+      Block& own = seen.block[seen.place(r, r)];
+      for (const std::size_t d : {0, 4, 8}) own[d] += std::ldexp(0.01, 2 * k) * std::abs(own[d]) + 1e-6;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 void Schwarz::set_patches(const std::vector<Vec3>& places, const std::vector<std::uint8_t>& held,
@@ -138,11 +152,12 @@ void Schwarz::number_results() {
 
 bool Schwarz::factor(const BlockMatrix& matrix, double shift) {
   // Coarse spaces first: the binding points' factor is the largest and needs the most room while it is made.
-  for (const auto& patch : patches_) patch->factor.clear();
+  for (const auto& patch : patches_) patch->factor.clear(), patch->definite = true;
 #ifdef __GLIBC__
   // The heap keeps what thousands of small factors leave behind; the coarse factors are too large for it.
   if (!answers_.empty()) malloc_trim(0);
 #endif
+  coarse_ready_ = true;
   for (const auto& level : levels_) {
     BlockMatrix seen;
     level->space->project(matrix, shift, seen);
@@ -151,17 +166,35 @@ bool Schwarz::factor(const BlockMatrix& matrix, double shift) {
         Block& own = seen.block[seen.place(r, r)];
         for (const std::size_t d : {0, 4, 8}) own[d] *= 1 + ridge;
       }
-    if (!level->factor.factor(seen, 0)) return false;
+    coarse_ready_ = factor_raised(seen, level->factor);
+    if (!coarse_ready_) break;
     level->factor.compact();
   }
+  return factor_patches(matrix, shift, true) && coarse_ready_ && answer_measures(matrix, shift);
+}
+
+bool Schwarz::factor_patches(const BlockMatrix& matrix, double shift, bool all) {
   std::atomic<bool> definite{true};
   parallel_chunks(static_cast<int>(patches_.size()), [&](int p) {
-    if (!definite) return;  // the answer is known
     Patch& patch = *patches_[place(p)];
-    if (!patch.factor.factor(patch_matrix(matrix, patch.nodes), shift)) definite = false;
+    if (!all && patch.definite) return;
+    patch.definite = patch.factor.factor(patch_matrix(matrix, patch.nodes), shift);
+    if (!patch.definite) definite = false;
     patch.factor.compact();
   });
-  return definite && answer_measures(matrix, shift);
+  return definite;
+}
+
+bool Schwarz::factor_again(const BlockMatrix& matrix, double shift) {
+  if (!coarse_ready_) return factor(matrix, shift);
+  return factor_patches(matrix, shift, false) && answer_measures(matrix, shift);
+}
+
+std::vector<std::int32_t> Schwarz::indefinite() const {
+  std::vector<std::int32_t> nodes;
+  for (const auto& patch : patches_)
+    if (!patch->definite) nodes.insert(nodes.end(), patch->nodes.begin(), patch->nodes.end());
+  return nodes;
 }
 
 bool Schwarz::answer_measures(const BlockMatrix& matrix, double shift) {

@@ -32,6 +32,10 @@ class Schwarz {
   bool ready() const { return !patches_.empty(); }
   // False if a patch or the coarse matrix is not positive definite: then A + shift D is not either.
   bool factor(const BlockMatrix& matrix, double shift);
+  // Control points of the patches that were not, where it was they. With a metric that weighs more there,
+  // factor_again() factors only these.
+  std::vector<std::int32_t> indefinite() const;
+  bool factor_again(const BlockMatrix& matrix, double shift);
   void solve(const Unknowns& b, Unknowns& x);
 
   int iterations = 0;  // that answers to the measures took, over all calls of factor()
@@ -41,6 +45,7 @@ class Schwarz {
     std::vector<std::int32_t> nodes;  // sorted
     std::size_t first_result = 0;
     Cholesky factor;
+    bool definite = true;
   };
 
   // A coarse space with the factor of the matrix that it sees.
@@ -50,6 +55,7 @@ class Schwarz {
     Unknowns right, result;
   };
 
+  bool factor_patches(const BlockMatrix& matrix, double shift, bool all);
   void number_results();
   bool answer_measures(const BlockMatrix& matrix, double shift);
   void solve_points(const Unknowns& b, Unknowns& x);  // without the measures
@@ -58,6 +64,7 @@ class Schwarz {
   std::vector<std::unique_ptr<Patch>> patches_;
   std::vector<std::array<float, 3>> results_;           // of all patches' control points
   std::vector<std::int32_t> result_start_, result_at_;  // [control point] its places among the results
+  bool coarse_ready_ = false;                           // the levels have their factors
   CoarseSpace plate_;
   std::vector<std::unique_ptr<Level>> levels_;
   std::vector<Unknowns> answers_;  // W, for width, height, skew

@@ -13,6 +13,7 @@ constexpr int most_inner = 24;    // more products and solves than this cost mor
 constexpr int most_patched = 200;
 constexpr int patched_factor = 35;  // iterations that take as long as factoring all patches and coarse spaces
 constexpr int most_raises = 60;
+constexpr int most_local_raises = 8;
 
 double raised_shift(double shift) { return std::max(4 * shift, 1e-4); }
 
@@ -21,11 +22,11 @@ double raised_shift(double shift) { return std::max(4 * shift, 1e-4); }
 StepSolver::StepSolver(const YarnModel& model) : model_(model) {}
 
 StepSolver::Report StepSolver::solve(const BlockMatrix& hessian, const YarnState& state,
-                                     const Unknowns& gradient, double accuracy, double& shift,
-                                     Unknowns& step) {
+                                     const Unknowns& gradient, double accuracy, double& shift, Unknowns& step,
+                                     const RaiseAt& raise_at) {
   Report report;
   if (model_.nodes > many_nodes && !model_.periodic) {
-    report.solved = solve_patched(hessian, state, gradient, accuracy, shift, report.raised, step);
+    report.solved = solve_patched(hessian, state, gradient, accuracy, shift, report.raised, step, raise_at);
   } else {
     if (current_ && model_.nodes > few_nodes) {
       const ConjugateGradientResult cg = conjugate_gradient(
@@ -68,10 +69,22 @@ bool StepSolver::solve_direct(const BlockMatrix& hessian, const Unknowns& gradie
 }
 
 bool StepSolver::solve_patched(const BlockMatrix& hessian, const YarnState& state, const Unknowns& gradient,
-                               double accuracy, double& shift, int& raised, Unknowns& step) {
+                               double accuracy, double& shift, int& raised, Unknowns& step,
+                               const RaiseAt& raise_at) {
   if (!schwarz_.ready()) schwarz_.set_patches(state.nodes, model_.held, hessian, model_.binding_points);
   const auto precondition = [this](const Unknowns& r, Unknowns& z) { schwarz_.solve(r, z); };
   const double digits = std::log(1 / accuracy);
+  // Where it was not definite: a larger shift there, or, where that is no small part, everywhere.
+  int local = 0;
+  const auto raise = [&](const std::vector<std::int32_t>& nodes) {
+    if (raise_at && !nodes.empty() && 4 * nodes.size() < hessian.row_start.size() &&
+        local < most_local_raises) {
+      raise_at(nodes, shift);
+      ++local;
+      return;
+    }
+    ++raised, shift = raised_shift(shift);
+  };
   // First with the factor at hand, until a new one and its iterations would take less than what is left. What
   // was reached by then is gone on from.
   ConjugateGradientLimits limits{.most = most_patched};
@@ -83,19 +96,29 @@ bool StepSolver::solve_patched(const BlockMatrix& hessian, const YarnState& stat
     if (cg.converged) return true;
     limits.patience = -1;
     limits.go_on = !cg.indefinite;
-    if (cg.indefinite) ++raised, shift = raised_shift(shift);
+    if (cg.indefinite) raise(cg.bent);
   }
-  for (; raised <= most_raises; ++raised, shift = raised_shift(shift), limits.go_on = false) {
+  for (; raised <= most_raises; limits.go_on = false) {
     ++factorisations;
     const int before = schwarz_.iterations;
     current_ = schwarz_.factor(hessian, shift);
+    for (; !current_ && raise_at && local < most_local_raises; ++local) {
+      const std::vector<std::int32_t> nodes = schwarz_.indefinite();
+      if (nodes.empty() || 4 * nodes.size() > hessian.row_start.size()) break;
+      raise_at(nodes, shift);
+      current_ = schwarz_.factor_again(hessian, shift);
+    }
     iterations += schwarz_.iterations - before;
-    if (!current_) continue;
+    if (!current_) {
+      ++raised, shift = raised_shift(shift);
+      continue;
+    }
     const ConjugateGradientResult cg =
         conjugate_gradient(hessian, shift, precondition, gradient, accuracy, limits, step);
     iterations += cg.iterations;
     if (cg.reduction < 1) usual_ = cg.iterations / std::log(1 / cg.reduction);
     if (!cg.indefinite) return true;  // not quite converged is still a good direction
+    raise(cg.bent);
   }
   return false;
 }

@@ -8,7 +8,9 @@
 //   study_swatches uncertainty FOLDER ROWS OUT N  swatches whose cells have N loops or fewer, with what is
 //   not
 //                                                 known well at its bounds: OUT/uncertainty.csv
-// studies/swatches/run does all but the last.
+//   study_swatches whole FOLDER NAME STATES       one whole swatch, border and all; what it was like after every
+//                                                 stage is kept in STATES, and a second run goes on from there
+// studies/swatches/run does all but the last two.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -22,6 +24,7 @@
 #include "outputs/atomic_file.hpp"
 #include "outputs/write_plot_svg.hpp"
 #include "swatch_table.hpp"
+#include "whole_road.hpp"
 
 namespace loopwright {
 namespace {
@@ -256,6 +259,34 @@ int uncertainty(const std::filesystem::path& folder, const std::filesystem::path
   return 0;
 }
 
+int whole(const std::filesystem::path& folder, const std::string& name, const std::filesystem::path& states) {
+  const auto swatches = measured_swatches(folder);
+  const auto found = std::find_if(swatches.begin(), swatches.end(),
+                                  [&name](const MeasuredSwatch& s) { return s.name == name; });
+  if (found == swatches.end()) throw std::runtime_error("no swatch of that name: " + name);
+  std::filesystem::create_directories(states);
+  std::printf("%s, measured %.1f x %.1f mm\n", name.c_str(), found->width_mm, found->height_mm);
+  std::printf("stage         width  height   middle third     steps  interlacings  uncertified  seconds\n");
+  WholeWork work;
+  work.states = states;
+  work.on_progress = [](WholeStage stage, const RelaxProgress& progress) {
+    if (progress.newton_iterations % 10 == 0)
+      std::fprintf(stderr, "%s: %s, step %d, residual %.2g\n", whole_stage_names[static_cast<std::size_t>(stage)],
+                   progress.phase.c_str(), progress.newton_iterations, progress.residual);
+  };
+  bool all = true;
+  work.on_stage = [&all](WholeStage stage, const WholeSize& s) {
+    std::printf("%-12s %6.1f  %6.1f  %6.1f x %-6.1f  %6d  %6d/%-6d  %10d  %8.1f%s\n",
+                whole_stage_names[static_cast<std::size_t>(stage)], s.width_mm, s.height_mm, s.middle_width_mm,
+                s.middle_height_mm, s.newton_iterations, s.interlacings_intact, s.interlacings, s.pass_throughs,
+                s.seconds, s.converged ? "" : "  NOT AT REST");
+    std::fflush(stdout);
+    all = all && s.converged;
+  };
+  relax_whole(found->file, work);
+  return all ? 0 : 1;
+}
+
 int run(const std::vector<std::string>& words) {
   if (words.size() == 2 && words[0] == "cells") {
     write_loop_sizes(words[1], relax_face_cells({}));
@@ -273,10 +304,11 @@ int run(const std::vector<std::string>& words) {
     set_thread_count(1);
     return uncertainty(words[1], words[2], words[3], std::stod(words[4]));
   }
+  if (words.size() == 4 && words[0] == "whole") return whole(words[1], words[2], words[3]);
   if (words.size() == 4 && words[0] == "collect") return collect(words[1], words[2], words[3]);
   std::cerr
       << "study_swatches cells TABLE | list FOLDER | predict[-net] FOLDER NAME ROWS TABLE | collect FOLDER "
-         "ROWS OUT | uncertainty FOLDER ROWS OUT MOST_LOOPS\n";
+         "ROWS OUT | uncertainty FOLDER ROWS OUT MOST_LOOPS | whole FOLDER NAME STATES\n";
   return 2;
 }
 

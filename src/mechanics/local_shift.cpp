@@ -11,7 +11,7 @@ constexpr double most_boost = 100;
 constexpr double faded = 0.3;    // of it is left after a step
 constexpr double counts = 1e-4;  // below which it is gone
 constexpr double much_of_gain = 0.05, energy_boost = 16;
-constexpr double least_bent_shift = 1e-3;
+constexpr double least_bent_shift = 1e-3, bent_boost = 4;
 constexpr int along_yarn = 3;  // control points beyond the segment that have it as well
 
 }  // namespace
@@ -20,9 +20,11 @@ void LocalShift::make_room() {
   if (own_.empty()) own_.assign(static_cast<std::size_t>(model_.nodes), 0);
 }
 
-void LocalShift::raise_node(int node, double least) {
-  float& own = own_[static_cast<std::size_t>(node)];
-  own = std::max(own, static_cast<float>(least));
+void LocalShift::raise_node(int node, double boost, double least, const std::vector<float>& before,
+                            double shift) {
+  const auto i = static_cast<std::size_t>(node);
+  const double now = std::max({static_cast<double>(before[i]), shift, least});
+  own_[i] = std::max(own_[i], static_cast<float>(boost * now));
 }
 
 const std::vector<float>& LocalShift::weights(double shift) {
@@ -37,11 +39,8 @@ const std::vector<float>& LocalShift::weights(double shift) {
 void LocalShift::raise_segment(int segment, double boost, const std::vector<float>& before, double shift) {
   const YarnModel::Yarn& yarn = model_.yarn_of(segment);
   const int at = segment - yarn.first_segment;
-  for (int k = std::max(0, at - along_yarn); k <= std::min(yarn.nodes - 1, at + 3 + along_yarn); ++k) {
-    const int node = yarn.first_node + k;
-    raise_node(node, boost * std::max({static_cast<double>(before[static_cast<std::size_t>(node)]), shift,
-                                       least_shift}));
-  }
+  for (int k = std::max(0, at - along_yarn); k <= std::min(yarn.nodes - 1, at + 3 + along_yarn); ++k)
+    raise_node(yarn.first_node + k, boost, least_shift, before, shift);
 }
 
 void LocalShift::raise(const SafeStep& step, double shift, double share) {
@@ -49,10 +48,7 @@ void LocalShift::raise(const SafeStep& step, double shift, double share) {
   // From what is there now: what is named twice is not raised twice.
   const std::vector<float> before = own_;
   const auto boost = [](double ratio) { return std::clamp(2 * ratio, 2.0, most_boost); };
-  for (const FarNode& far : step.far)
-    raise_node(far.node,
-               boost(far.ratio) * std::max({static_cast<double>(before[static_cast<std::size_t>(far.node)]),
-                                            shift, least_shift}));
+  for (const FarNode& far : step.far) raise_node(far.node, boost(far.ratio), least_shift, before, shift);
   for (const NearPair& pair : step.near)
     for (const int segment : {pair.a, pair.b})
       raise_segment(segment, boost(pair.ratio / share), before, shift);
@@ -74,9 +70,7 @@ bool LocalShift::raise(const std::vector<double>& before, const std::vector<doub
 void LocalShift::raise(const std::vector<std::int32_t>& nodes, double shift) {
   make_room();
   const std::vector<float> before = own_;
-  for (const std::int32_t node : nodes)
-    raise_node(node, 4 * std::max({static_cast<double>(before[static_cast<std::size_t>(node)]), shift,
-                                   least_bent_shift}));
+  for (const std::int32_t node : nodes) raise_node(node, bent_boost, least_bent_shift, before, shift);
 }
 
 void LocalShift::fade() {

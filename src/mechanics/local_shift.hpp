@@ -27,7 +27,8 @@ class LocalShift {
   bool empty() const { return own_.empty(); }
 
  private:
-  void raise_node(int node, double least);
+  // To `boost` times the largest of what it had `before`, the common shift and `least`.
+  void raise_node(int node, double boost, double least, const std::vector<float>& before, double shift);
   void raise_segment(int segment, double boost, const std::vector<float>& before, double shift);
   void make_room();
 

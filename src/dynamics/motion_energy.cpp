@@ -76,10 +76,12 @@ void YarnMotion::prepare_friction(double dt) {
       ++rebound_;
     }
     Friction& law = friction_[k];
-    law.load = binding.friction * std::abs(binding.multiplier);
-    // An explicit step holds only springs that are soft against the mass on them, about one unit.
+    law = {};
+    // Yarn that a binding holds back from leaving is not pressed on the other.
+    law.load = binding.friction * std::max(0.0, -binding.multiplier);
+    // An explicit step holds only springs that are soft against the mass on them.
     if (options_.stepper == MotionStepper::explicit_euler)
-      law.softness = std::max(law.softness, 8 * law.load * dt * dt);
+      law.softness = std::max(law.softness, 8 * law.load * dt * dt * mobility(start_[k]));
     law.normal = start_[k].normal;
     law.slip = law.tangential(binding.slip);
     law.weight_a = start_[k].a.weights.value;
@@ -125,6 +127,17 @@ bool YarnMotion::can_move(const ShortestConnection& connection) const {
     if (model_.held[b] == 0) sum += connection.b.weights.value[i] * connection.b.weights.value[i];
   }
   return sum > least;
+}
+
+// Acceleration of the two yarns at a binding by a unit of force, about.
+double YarnMotion::mobility(const ShortestConnection& connection) const {
+  double sum = 0;
+  for (const CurvePoint* c : {&connection.a, &connection.b})
+    for (std::size_t i = 0; i < 4; ++i) {
+      const auto point = static_cast<std::size_t>(c->first) + i;
+      if (model_.held[point] == 0) sum += c->weights.value[i] * c->weights.value[i] / lumped_[point];
+    }
+  return sum;
 }
 
 namespace {

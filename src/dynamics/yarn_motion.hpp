@@ -101,6 +101,7 @@ class YarnMotion {
   void prepare_friction(double dt);
   void merge_sliding();
   bool can_move(const ShortestConnection& connection) const;
+  double mobility(const ShortestConnection& connection) const;
   void accept_friction();
   double potential(const std::vector<Vec3>& place) const;
   double gradient(const std::vector<Vec3>& place, std::vector<Vec3>& g, BandHessian* band) const;

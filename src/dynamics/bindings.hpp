@@ -15,6 +15,7 @@
 // loaded by the multiplier of the step before.
 #pragma once
 #include <array>
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -43,8 +44,16 @@ struct OrientationSpring {
   double rest = 1, stiffness = 1;
 };
 
+// How far a free variable may go in a step, and what holds it back: 1/2 drag (t - from)^2 is added to
+// 1/2 |p_a - p_b|^2.
+struct SlideRange {
+  double low = 0, high = std::numeric_limits<double>::infinity();
+  double from = 0, drag = 0;
+};
+
 struct SlidingBinding {
-  YarnPlace a, b;         // free variables: where the yarns touch now
+  YarnPlace a, b;  // free variables: where the yarns touch now
+  SlideRange range_a, range_b;
   double distance = 1;    // g
   double multiplier = 0;  // force along n: negative where the yarns press on each other
   double friction = 0;    // coefficient
@@ -54,15 +63,30 @@ struct SlidingBinding {
 // The shortest connection near a binding's last one.
 struct ShortestConnection {
   CurvePoint a, b;
-  Vec3 normal;          // n, from b to a
-  double distance = 0;  // D
+  Vec3 normal;                        // dD / dp_a: n, from b to a
+  double distance = 0;                // D
+  double drag_a = 0, drag_b = 0;      // as in SlideRange
+  bool free_a = true, free_b = true;  // false: at an end of its range
 };
 // Moves the free variables s and t of `binding` to the places that are nearest to each other, downhill from
-// where they are (yarns may slide from segment to segment, not past their ends).
+// where they are and within their ranges (yarns may slide from segment to segment, not past their ends).
 ShortestConnection follow(const SplineModel& model, std::span<const Vec3> place, SlidingBinding& binding);
-// The second derivative of D by the 8 control points (4 of a, 4 of b), s and t following:
+// The second derivative of D by the 8 control points (4 of a, 4 of b), s and t following where they are free:
 //   D_qq - D_qs (D_ss)^-1 D_sq
 std::array<std::array<double, 24>, 24> distance_hessian(const ShortestConnection& connection);
+
+// Between two bindings that follow each other on a yarn there stays some room.
+struct SlideStop {
+  std::size_t first = 0, second = 0;           // bindings, in their order along the yarn
+  bool first_is_a = true, second_is_a = true;  // which of their two places is on this yarn
+  double room = 0;                             // parameters
+};
+// For all neighbours on every yarn: half the thickness of both yarns that cross there, or as much as there
+// is.
+std::vector<SlideStop> slide_stops(const SplineModel& model, std::span<const SlidingBinding> bindings);
+// Ranges for a step from where the bindings are: up to the middle between neighbours, less half their room.
+void set_ranges(const SplineModel& model, std::span<const Vec3> place, std::span<const SlideStop> stops,
+                std::span<SlidingBinding> bindings);
 
 // A foot of a loop and the head that it is drawn through, as stretches of yarn (parameters, begin < end).
 struct Foot {

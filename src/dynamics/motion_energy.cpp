@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <tuple>
 
 #include "dynamics/motion_solver.hpp"
 #include "dynamics/yarn_motion.hpp"
@@ -35,6 +34,8 @@ YarnMotion::YarnMotion(SplineModel model, MotionState state, Bindings bindings, 
   }
   multiplier_.assign(bindings_.barycentric.size(), Vec3{});
   for (SlidingBinding& binding : bindings_.sliding) follow(model_, state_.place, binding);
+  stops_ = slide_stops(model_, bindings_.sliding);
+  for (const SlidingBinding& binding : bindings_.sliding) full_distance_.push_back(binding.distance);
   prepare_friction(1);
   if (contact_) {
     solver_->assembly = std::make_unique<Assembly>(contact_->model);
@@ -60,20 +61,20 @@ void YarnMotion::weigh(std::span<const Vec3> x, std::vector<Vec3>& y) const {
 
 // Takes down load, normal and place of every sliding contact, as friction keeps them through a step.
 void YarnMotion::prepare_friction(double dt) {
-  merge_sliding();
+  set_ranges(model_, state_.place, stops_, bindings_.sliding);
   friction_.resize(bindings_.sliding.size());
   start_.resize(bindings_.sliding.size());
   for (std::size_t k = 0; k < friction_.size(); ++k) {
     SlidingBinding& binding = bindings_.sliding[k];
     start_[k] = follow(model_, state_.place, binding);
-    // The nearest approach has ended and the free variables have gone on to another one: bound there from
-    // now.
-    constexpr double elsewhere = 0.05;
-    if (std::abs(start_[k].distance - binding.distance) > elsewhere) {
-      binding.distance = start_[k].distance;
-      binding.multiplier = 0;
-      binding.slip = {};
-      ++rebound_;
+    // Where a nearest approach has ended its place goes on downhill, and finds yarn that is nearer already:
+    // an explicit step leads it apart from there, it would else be shot.
+    if (options_.stepper == MotionStepper::explicit_euler) {
+      constexpr double elsewhere = 0.02, apart = 0.004;
+      if (start_[k].distance < (1 - elsewhere) * binding.distance)
+        binding.distance = start_[k].distance;
+      else
+        binding.distance = std::min(full_distance_[k], binding.distance + apart * full_distance_[k]);
     }
     Friction& law = friction_[k];
     law = {};
@@ -87,31 +88,6 @@ void YarnMotion::prepare_friction(double dt) {
     law.weight_a = start_[k].a.weights.value;
     law.weight_b = start_[k].b.weights.value;
     law.start = start_[k].a.place - start_[k].b.place;
-  }
-}
-
-// Two nearest approaches of a foot can grow into one as the yarns turn: from then on one binding holds it, at
-// the distance that is there.
-void YarnMotion::merge_sliding() {
-  constexpr double same = 0.75;  // segments; nearer, the two would fight over one distance
-  std::vector<SlidingBinding>& all = bindings_.sliding;
-  for (SlidingBinding& binding : all) follow(model_, state_.place, binding);
-  std::sort(all.begin(), all.end(), [](const SlidingBinding& p, const SlidingBinding& q) {
-    return std::tie(p.a.yarn, p.b.yarn, p.a.t, p.b.t) < std::tie(q.a.yarn, q.b.yarn, q.a.t, q.b.t);
-  });
-  for (std::size_t k = 1; k < all.size();) {
-    SlidingBinding &kept = all[k - 1], &other = all[k];
-    const bool merged = kept.a.yarn == other.a.yarn && kept.b.yarn == other.b.yarn &&
-                        std::abs(kept.a.t - other.a.t) < same && std::abs(kept.b.t - other.b.t) < same;
-    if (!merged) {
-      ++k;
-      continue;
-    }
-    kept.distance = follow(model_, state_.place, kept).distance;
-    kept.multiplier = 0;
-    kept.slip = {};
-    all.erase(all.begin() + static_cast<std::ptrdiff_t>(k));
-    ++rebound_;
   }
 }
 

@@ -88,9 +88,6 @@ class YarnMotion {
   // the force that a frame which is now of that width carries at rest, contact included.
   double course_force(double width) const;
   double contact_core() const;  // 0 without contact
-  // How often a sliding binding had to be set anew, because the nearest approach that it followed had ended
-  // or had become one with its neighbour.
-  int rebound() const { return rebound_; }
 
  private:
   struct Solver;
@@ -99,7 +96,6 @@ class YarnMotion {
   bool contact_step(double dt, StepReport& report);
   void grow_core();
   void prepare_friction(double dt);
-  void merge_sliding();
   bool can_move(const ShortestConnection& connection) const;
   double mobility(const ShortestConnection& connection) const;
   void accept_friction();
@@ -114,11 +110,12 @@ class YarnMotion {
   Bindings bindings_;
   MotionOptions options_;
   std::optional<FabricContact> contact_;
-  int rebound_ = 0;
   double part_ = 1;  // of a step that went well last
   std::vector<BandMatrix> mass_;
   std::vector<double> lumped_;             // row sums of M
   std::vector<Vec3> multiplier_;           // of barycentric bindings
+  std::vector<double> full_distance_;      // of sliding bindings, as they were made
+  std::vector<SlideStop> stops_;           // between sliding bindings
   std::vector<Friction> friction_;         // of sliding bindings, as the step began
   std::vector<ShortestConnection> start_;  // of sliding bindings, as the step began
   std::unique_ptr<Solver> solver_;

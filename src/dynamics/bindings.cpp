@@ -166,6 +166,11 @@ ShortestConnection follow(const SplineModel& model, std::span<const Vec3> place,
   return c;
 }
 
+double off_by(const SlidingBinding& binding, const ShortestConnection& connection) {
+  const double nearer = binding.distance - connection.distance;
+  return binding.may_part() ? std::max(0.0, nearer) : std::abs(nearer);
+}
+
 std::array<std::array<double, 24>, 24> distance_hessian(const ShortestConnection& c) {
   // D = sqrt(2 F) with F = 1/2 |r|^2 + drags: D_qq = (F_qq - n n') / D, and F_qq less what s and t take.
   std::array<std::array<double, 24>, 24> h{};
@@ -288,6 +293,7 @@ Bindings barycentric_bindings(const SplineModel& model, std::span<const Vec3> pl
 
 Bindings sliding_bindings(const SplineModel& model, std::span<const Vec3> place, std::span<const Foot> feet,
                           double friction) {
+  constexpr double most_pull = 5;  // B/d^2: a loop of plain presses with about one
   Bindings bindings;
   std::vector<SlidingBinding>& all = bindings.sliding;
   for (const Foot& foot : feet)
@@ -297,12 +303,14 @@ Bindings sliding_bindings(const SplineModel& model, std::span<const Vec3> place,
       binding.a = a;
       binding.b = b;
       binding.friction = friction;
+      binding.most_pull = most_pull;
       all.push_back(binding);
     }
   // Downhill from where the yarns cross, as far as the neighbours let them: where a foot wraps a head, both
   // of its contacts would else end at one nearest approach, which holds neither side.
   constexpr int most_rounds = 100;
   constexpr double settled = 1e-6;
+  bindings.guarded.assign(feet.begin(), feet.end());
   const std::vector<SlideStop> stops = slide_stops(model, all);
   double moved = 1;
   for (int round = 0; round < most_rounds && moved > settled; ++round) {

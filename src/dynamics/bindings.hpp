@@ -54,10 +54,16 @@ struct SlideRange {
 struct SlidingBinding {
   YarnPlace a, b;  // free variables: where the yarns touch now
   SlideRange range_a, range_b;
-  double distance = 1;    // g
-  double multiplier = 0;  // force along n: negative where the yarns press on each other
-  double friction = 0;    // coefficient
-  Vec3 slip;              // elastic slip of the friction, tangential
+  double distance = 1;       // g
+  double full_distance = 0;  // what an explicit step leads g back to where it found yarn nearer
+  double multiplier = 0;     // force along n: negative where the yarns press on each other
+  double friction = 0;       // coefficient
+  Vec3 slip;                 // elastic slip of the friction, tangential
+  // Yarns are held at g by up to this pull; beyond it they part, until they press on each other again.
+  double most_pull = std::numeric_limits<double>::infinity();
+  bool parted = false;
+  bool guard = false;  // only presses, ever
+  bool may_part() const { return guard || parted; }
 };
 
 // The shortest connection near a binding's last one.
@@ -71,6 +77,8 @@ struct ShortestConnection {
 // Moves the free variables s and t of `binding` to the places that are nearest to each other, downhill from
 // where they are and within their ranges (yarns may slide from segment to segment, not past their ends).
 ShortestConnection follow(const SplineModel& model, std::span<const Vec3> place, SlidingBinding& binding);
+// |D - g|, or g - D where the yarns may part.
+double off_by(const SlidingBinding& binding, const ShortestConnection& connection);
 // The second derivative of D by the 8 control points (4 of a, 4 of b), s and t following where they are free:
 //   D_qq - D_qs (D_ss)^-1 D_sq
 std::array<std::array<double, 24>, 24> distance_hessian(const ShortestConnection& connection);
@@ -109,7 +117,13 @@ struct Bindings {
   std::vector<BarycentricBinding> barycentric;
   std::vector<OrientationSpring> springs;
   std::vector<SlidingBinding> sliding;
+  std::vector<Foot> guarded;  // feet that are looked at for approaches beside their bindings
 };
+
+// Guards, bindings that only press: set wherever a foot and its head have come near each other beside the
+// bindings that are there, taken away where they have parted again.
+void update_guards(const SplineModel& model, std::span<const Vec3> place, std::span<const Foot> feet,
+                   std::vector<SlidingBinding>& bindings);
 
 // One barycentric binding a foot, with orientation springs at its contacts that rest at the distances which
 // `place` has. Bindings whose control points are all held are left out.

@@ -34,8 +34,8 @@ YarnMotion::YarnMotion(SplineModel model, MotionState state, Bindings bindings, 
   }
   multiplier_.assign(bindings_.barycentric.size(), Vec3{});
   for (SlidingBinding& binding : bindings_.sliding) follow(model_, state_.place, binding);
-  stops_ = slide_stops(model_, bindings_.sliding);
-  for (const SlidingBinding& binding : bindings_.sliding) full_distance_.push_back(binding.distance);
+  for (SlidingBinding& binding : bindings_.sliding)
+    binding.full_distance = std::max(binding.full_distance, binding.distance);
   prepare_friction(1);
   if (contact_) {
     solver_->assembly = std::make_unique<Assembly>(contact_->model);
@@ -61,11 +61,19 @@ void YarnMotion::weigh(std::span<const Vec3> x, std::vector<Vec3>& y) const {
 
 // Takes down load, normal and place of every sliding contact, as friction keeps them through a step.
 void YarnMotion::prepare_friction(double dt) {
-  set_ranges(model_, state_.place, stops_, bindings_.sliding);
+  if (!bindings_.guarded.empty()) update_guards(model_, state_.place, bindings_.guarded, bindings_.sliding);
+  set_ranges(model_, state_.place, slide_stops(model_, bindings_.sliding), bindings_.sliding);
   friction_.resize(bindings_.sliding.size());
   start_.resize(bindings_.sliding.size());
+  pressing_.assign(bindings_.sliding.size(), 1);
   for (std::size_t k = 0; k < friction_.size(); ++k) {
     SlidingBinding& binding = bindings_.sliding[k];
+    if (binding.multiplier > binding.most_pull) {
+      binding.parted = true;
+      binding.multiplier = 0;
+    } else if (binding.multiplier < 0) {
+      binding.parted = false;
+    }
     start_[k] = follow(model_, state_.place, binding);
     // Where a nearest approach has ended its place goes on downhill, and finds yarn that is nearer already:
     // an explicit step leads it apart from there, it would else be shot.
@@ -74,8 +82,9 @@ void YarnMotion::prepare_friction(double dt) {
       if (start_[k].distance < (1 - elsewhere) * binding.distance)
         binding.distance = start_[k].distance;
       else
-        binding.distance = std::min(full_distance_[k], binding.distance + apart * full_distance_[k]);
+        binding.distance = std::min(binding.full_distance, (1 + apart) * binding.distance);
     }
+    if (binding.may_part() && start_[k].distance >= binding.distance) pressing_[k] = 0;
     Friction& law = friction_[k];
     law = {};
     // Yarn that a binding holds back from leaving is not pressed on the other.
@@ -238,9 +247,8 @@ double YarnMotion::constraint_error() const {
     largest = std::max(largest, norm(binding.error(state_.place)));
   for (SlidingBinding binding : bindings_.sliding) {
     const ShortestConnection c = follow(model_, state_.place, binding);
-    if (can_move(c)) largest = std::max(largest, std::abs(c.distance - binding.distance));
+    if (can_move(c)) largest = std::max(largest, off_by(binding, c));
   }
-
   return largest;
 }
 

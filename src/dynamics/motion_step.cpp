@@ -1,4 +1,5 @@
-// Steps in time of yarns that bindings hold together: explicit, and implicit by Newton's method.
+// Steps in time of yarns that bindings hold together: what all steps share, and the implicit one by Newton's
+// method.
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -10,15 +11,6 @@ namespace loopwright {
 namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-// A yarn's mass matrix with held points out of it.
-BandMatrix free_mass(const BandMatrix& mass, const SplineModel& model, int first) {
-  BandMatrix m = mass;
-  for (std::size_t i = 0; i < m.size(); ++i)
-    for (std::size_t j = i - std::min<std::size_t>(i, 3); j <= i; ++j)
-      if (model.held[at(first) + i] != 0 || model.held[at(first) + j] != 0) m.at(i, j) = i == j ? 1 : 0;
-  return m;
-}
 
 double largest_free(const SplineModel& model, const std::vector<Vec3>& v) {
   double largest = 0;
@@ -58,7 +50,8 @@ StepReport YarnMotion::step(double dt, std::span<const Vec3> held_place) {
     const int newton_before = report.newton;
     for (std::size_t i = 0; i < from.size(); ++i)
       if (model_.held[i] != 0) state_.velocity[i] = held_velocity(i);
-    const bool good = contact_ ? contact_step(part * dt, report) : implicit_step(part * dt, report);
+    const bool good =
+        contact_ ? contact_step(part * dt, report) : implicit_step(part * dt, report, part <= least);
     if (!good && part > least) {
       ++report.halvings;
       part_ = 0.5 * part;
@@ -77,117 +70,11 @@ StepReport YarnMotion::step(double dt, std::span<const Vec3> held_place) {
   return report;
 }
 
-StepReport YarnMotion::explicit_step(double dt) {
-  const std::size_t n = state_.place.size(), joints = bindings_.barycentric.size(),
-                    slides = bindings_.sliding.size();
+bool YarnMotion::implicit_step(double dt, StepReport& report, bool smallest) {
   prepare_friction(dt);
-  std::vector<Vec3> force, right, still(n);
-  gradient(state_.place, force, nullptr);
-  // Right side: momentum after the loads; held points carry theirs to their neighbours.
-  for (std::size_t i = 0; i < n; ++i) {
-    force[i] = lumped_[i] * model_.gravity - force[i];
-    if (!model_.force.empty()) force[i] += model_.force[i];
-    if (model_.held[i] == 0) still[i] = (1 - dt * model_.drag) * state_.velocity[i];
-  }
-  weigh(still, right);
-  for (std::size_t i = 0; i < n; ++i)
-    right[i] = model_.held[i] != 0 ? state_.velocity[i] : right[i] + dt * force[i];
-
-  const auto free_point = [&](int i) { return model_.held[at(i)] == 0; };
-  const double back = options_.baumgarte / dt;
-  if (joints + slides == 0) {
-    if (solver_->mass_factor.empty())
-      for (std::size_t k = 0; k < mass_.size(); ++k)
-        solver_->mass_factor.emplace_back(free_mass(mass_[k], model_, model_.yarns[k].first));
-    for (std::size_t k = 0; k < mass_.size(); ++k)
-      solver_->mass_factor[k].solve(
-          std::span<Vec3>(right).subspan(at(model_.yarns[k].first), mass_[k].size()));
-  } else {
-    // Without sliding, mass and bindings are the same for x, y and z and never change: one scalar matrix.
-    SaddleSolver& saddle = solver_->saddle;
-    const bool scalar = slides == 0;
-    const std::size_t axes = scalar ? 1 : 3;
-    const auto row = [&](std::size_t point, std::size_t axis) {
-      return static_cast<int>(axes * point + axis);
-    };
-    const auto joint_row = [&](std::size_t k, std::size_t axis) { return row(n + k, axis); };
-    const auto slide_row = [&](std::size_t k) { return static_cast<int>(axes * (n + joints) + k); };
-    std::vector<double> drift(slides);  // what the sliding bindings want of dD/dt
-    if (!scalar || !solver_->explicit_factored) {
-      saddle.start(static_cast<int>(axes * (n + joints) + slides));
-      for (std::size_t k = 0; k < mass_.size(); ++k) {
-        const auto first = at(model_.yarns[k].first);
-        const BandMatrix m = free_mass(mass_[k], model_, model_.yarns[k].first);
-        for (std::size_t i = 0; i < m.size(); ++i)
-          for (std::size_t j = i - std::min<std::size_t>(i, 3); j <= i; ++j)
-            for (std::size_t c = 0; c < axes; ++c) saddle.add(row(first + i, c), row(first + j, c), m(i, j));
-      }
-      for (std::size_t k = 0; k < joints; ++k)
-        for (std::size_t c = 0; c < axes; ++c) {
-          for (const auto& [point, w] : bindings_.barycentric[k].weights)
-            if (free_point(point)) saddle.add(joint_row(k, c), row(at(point), c), w);
-          saddle.add(joint_row(k, c), joint_row(k, c), -saddle_softness);
-        }
-      for (std::size_t k = 0; k < slides; ++k) {
-        const ShortestConnection& c = start_[k];
-        drift[k] = 0;
-        if (can_move(c)) drift[k] = -back * (c.distance - bindings_.sliding[k].distance);
-        for (std::size_t i = 0; can_move(c) && i < 8; ++i) {
-          const int point = i < 4 ? c.a.first + static_cast<int>(i) : c.b.first + static_cast<int>(i) - 4;
-          const double w = i < 4 ? c.a.weights.value[i] : -c.b.weights.value[i - 4];
-          for (std::size_t axis = 0; axis < 3; ++axis) {
-            const double entry = w * c.normal[static_cast<int>(axis)];
-            if (free_point(point))
-              saddle.add(slide_row(k), row(at(point), axis), entry);
-            else
-              drift[k] -= entry * state_.velocity[at(point)][static_cast<int>(axis)];
-          }
-        }
-        saddle.add(slide_row(k), slide_row(k), -sliding_softness);
-      }
-      if (!saddle.factor()) throw std::runtime_error("the bindings' matrix cannot be factored");
-      solver_->explicit_factored = true;
-    }
-    std::vector<Vec3> joint(joints);
-    for (std::size_t k = 0; k < joints; ++k) {
-      joint[k] = -back * bindings_.barycentric[k].error(state_.place);
-      for (const auto& [point, w] : bindings_.barycentric[k].weights)
-        if (!free_point(point)) joint[k] -= w * state_.velocity[at(point)];
-    }
-    const std::size_t rows = axes * (n + joints) + slides;
-    std::vector<double> b(rows);
-    for (int pass = 0; pass < (scalar ? 3 : 1); ++pass) {
-      for (std::size_t i = 0; i < n + joints; ++i)
-        for (std::size_t c = 0; c < axes; ++c) {
-          const int axis = scalar ? pass : static_cast<int>(c);
-          b[axes * i + c] = i < n ? right[i][axis] : joint[i - n][axis];
-        }
-      for (std::size_t k = 0; k < slides; ++k) b[axes * (n + joints) + k] = drift[k];
-      saddle.solve(b);
-      for (std::size_t i = 0; i < n + joints; ++i)
-        for (std::size_t c = 0; c < axes; ++c) {
-          const int axis = scalar ? pass : static_cast<int>(c);
-          if (i < n)
-            right[i][axis] = b[axes * i + c];
-          else
-            multiplier_[i - n][axis] = b[axes * i + c] / dt;
-        }
-      for (std::size_t k = 0; k < slides; ++k)
-        bindings_.sliding[k].multiplier = b[axes * (n + joints) + k] / dt;
-    }
-  }
-  state_.velocity = std::move(right);
-  for (std::size_t i = 0; i < n; ++i) state_.place[i] += dt * state_.velocity[i];
-  accept_friction();
-  state_.time += dt;
-  return {};
-}
-
-bool YarnMotion::implicit_step(double dt, StepReport& report) {
   const std::size_t n = state_.place.size(), joints = bindings_.barycentric.size(),
                     slides = bindings_.sliding.size(), unknowns = 3 * n,
                     rows = unknowns + 3 * joints + slides;
-  prepare_friction(dt);
   const std::vector<Vec3> inertial = inertial_place(dt);
   std::vector<Vec3> x = state_.place, g, apart(n), heavy;
   for (std::size_t i = 0; i < n; ++i)
@@ -204,7 +91,7 @@ bool YarnMotion::implicit_step(double dt, StepReport& report) {
     }
     for (SlidingBinding binding : bindings_.sliding) {
       const ShortestConnection c = follow(model_, place, binding);
-      if (can_move(c)) sum += std::abs(c.distance - binding.distance);
+      if (can_move(c)) sum += off_by(binding, c);
     }
     return sum;
   };
@@ -242,7 +129,11 @@ bool YarnMotion::implicit_step(double dt, StepReport& report) {
     for (std::size_t k = 0; k < slides; ++k) {
       SlidingBinding& binding = bindings_.sliding[k];
       now[k] = follow(model_, x, binding);
-      if (!can_move(now[k]))
+      // A guard counts while it presses or is pressed on.
+      constexpr double press = 10;  // force for a distance that is missing
+      if (binding.may_part())
+        pressing_[k] = binding.multiplier + press * (now[k].distance - binding.distance) < 0 ? 1 : 0;
+      if (!holds(k, now[k]))
         binding.multiplier = 0;
       else
         most_off = std::max(most_off, std::abs(now[k].distance - binding.distance));
@@ -359,7 +250,7 @@ bool YarnMotion::implicit_step(double dt, StepReport& report) {
         }
       for (std::size_t k = 0; k < slides; ++k) {
         const std::array<int, 8> point = points_of(now[k].a, now[k].b);
-        for (std::size_t i = 0; can_move(now[k]) && i < 8; ++i)
+        for (std::size_t i = 0; holds(k, now[k]) && i < 8; ++i)
           for (std::size_t c = 0; c < 3; ++c)
             if (free_point(point[i]))
               saddle.add(slide_row(k), row(at(point[i]), c),
@@ -380,7 +271,7 @@ bool YarnMotion::implicit_step(double dt, StepReport& report) {
       for (std::size_t a = 0; a < 3; ++a) b[unknowns + 3 * k + a] = -c[static_cast<int>(a)];
     }
     for (std::size_t k = 0; k < slides; ++k)
-      b[unknowns + 3 * joints + k] = can_move(now[k]) ? bindings_.sliding[k].distance - now[k].distance : 0;
+      b[unknowns + 3 * joints + k] = holds(k, now[k]) ? bindings_.sliding[k].distance - now[k].distance : 0;
     saddle.solve(b);
 
     // The whole step, unless it is longer than the yarns are thick or raises energy + penalty |C|.
@@ -420,6 +311,11 @@ bool YarnMotion::implicit_step(double dt, StepReport& report) {
     if (shift < 1e-6 * inertia) shift = 0;
   }
   solver_->shift = shift;
+  // Guards are set where a step begins: yarn must not pass from outside their reach to the other side in one.
+  constexpr double farthest = 0.3;  // d
+  double farthest_moved = 0;
+  for (std::size_t i = 0; i < n; ++i) farthest_moved = std::max(farthest_moved, norm(x[i] - state_.place[i]));
+  if (!bindings_.guarded.empty() && farthest_moved > farthest && !smallest) return false;
   for (std::size_t i = 0; i < n; ++i) state_.velocity[i] = (x[i] - state_.place[i]) / dt;
   state_.place = std::move(x);
   accept_friction();

@@ -92,11 +92,15 @@ class YarnMotion {
  private:
   struct Solver;
   StepReport explicit_step(double dt);
-  bool implicit_step(double dt, StepReport& report);
+  bool let_go();
+  bool implicit_step(double dt, StepReport& report, bool smallest);
   bool contact_step(double dt, StepReport& report);
   void grow_core();
   void prepare_friction(double dt);
   bool can_move(const ShortestConnection& connection) const;
+  bool holds(std::size_t k, const ShortestConnection& connection) const {
+    return pressing_[k] != 0 && can_move(connection);
+  }
   double mobility(const ShortestConnection& connection) const;
   void accept_friction();
   double potential(const std::vector<Vec3>& place) const;
@@ -114,9 +118,8 @@ class YarnMotion {
   std::vector<BandMatrix> mass_;
   std::vector<double> lumped_;             // row sums of M
   std::vector<Vec3> multiplier_;           // of barycentric bindings
-  std::vector<double> full_distance_;      // of sliding bindings, as they were made
-  std::vector<SlideStop> stops_;           // between sliding bindings
   std::vector<Friction> friction_;         // of sliding bindings, as the step began
+  std::vector<std::uint8_t> pressing_;     // 0: a guard whose yarns are apart
   std::vector<ShortestConnection> start_;  // of sliding bindings, as the step began
   std::unique_ptr<Solver> solver_;
 };

@@ -184,8 +184,8 @@ int animate_yarn(const AnimateCommand& command) {
   std::vector<Moment> moments{{0, relaxed.fabric}};
   StepReport all;
   const std::vector<Vec3> from = motion.state().place;
-  // Bindings keep yarn on yarn, but nothing keeps a loop's yarn in its loop or on its side: before a step
-  // that loses an interlacing the motion stops.
+  // Bindings hold a loop's yarn in its loop but see no other yarn, and no step is certified: before one that
+  // loses an interlacing the motion stops.
   const bool may_lose = command.binding != "contact";
   std::vector<int> broken_before = check_interlacings(relaxed.fabric).broken;
   std::sort(broken_before.begin(), broken_before.end());
@@ -221,7 +221,7 @@ int animate_yarn(const AnimateCommand& command) {
           why << ": in the next step the loop of line " << place_of(moved, lost->child).line << ", column "
               << place_of(moved, lost->child).column
               << " would slip out of the loop that it is drawn through. " << command.binding
-              << " bindings hold small motion only: pull less, or take --binding contact";
+              << " bindings do not hold it there: pull less or slower, or take --binding contact";
           stopped = why.str();
           moments.push_back({before.time * units.time_s, last});
         }

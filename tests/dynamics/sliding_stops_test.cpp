@@ -223,6 +223,7 @@ TEST(SlidingStops, PlainAndRibArePulledAsUnderContact) {
       motion_options.constraint_tolerance = 1e-6;
       motion_options.most_newton = 25;
       YarnMotion motion(model, start, bindings, motion_options, shells);
+      const std::vector<SlideStop> stops = slide_stops(model, bindings.sliding);
       int newton = 0;
       constexpr int steps = 60;  // the last ones at rest
       for (int step = 0; step < steps; ++step) {
@@ -231,6 +232,13 @@ TEST(SlidingStops, PlainAndRibArePulledAsUnderContact) {
         const StepReport report = motion.step(25, held);
         EXPECT_TRUE(report.converged) << c.file << ", step " << step;
         newton += report.newton;
+        for (const SlideStop& stop : stops) {  // guards come after the bindings that were there first
+          const SlidingBinding &first = motion.bindings().sliding[stop.first],
+                               &second = motion.bindings().sliding[stop.second];
+          EXPECT_GT((stop.second_is_a ? second.a : second.b).t - (stop.first_is_a ? first.a : first.b).t,
+                    stop.room - 0.01)  // a thickness is not quite the same share of every segment
+              << c.file << ", step " << step;
+        }
         const InterlacingCheck check = check_interlacings(with_places(rest.fabric, motion.state().place));
         EXPECT_EQ(check.intact, check.expected) << c.file << ", step " << step;
       }

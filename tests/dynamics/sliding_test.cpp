@@ -142,28 +142,37 @@ TEST(SlidingFriction, SlowsDownByTheLoadAndStops) {
     }
 }
 
-// Two yarns that cross, bound and in flight: nothing from outside, no friction. Both momenta stay to rounding
-// in explicit steps and energy within what such steps do to it.
-TEST(SlidingFriction, FlightWithoutFrictionKeepsMomentaAndEnergy) {
-  Scene s;
-  const int a = s.add(line({-6, 0, 0}, {1, 0, 0}, 13), 300, 4, false),
-            b = s.add(line({0.3, -6, 1}, {0, 1, 0}, 13), 300, 4, false);
-  s.bind({a, 5.3}, {b, 5.1}, 1, 0);
-  for (std::size_t i = 0; i < s.state.place.size(); ++i) {
-    const Vec3& p = s.state.place[i];
-    s.state.velocity[i] = i < 13 ? Vec3{0.3, 0.05 * p.x, 0.2} : Vec3{-0.1, 0.3, 0.02 * p.y + 0.2};
+// Two yarns that cross, bound and in flight: nothing from outside. Momentum stays to rounding in explicit
+// steps; without friction angular momentum too, and energy within what such steps do to it; with friction
+// energy falls. (Friction acts at the centrelines, a distance apart, and yarn has no twist to take its
+// couple.)
+TEST(SlidingFriction, FlightKeepsMomentaAndEnergy) {
+  for (const double mu : {0.0, 0.3}) {
+    Scene s;
+    const int a = s.add(line({-6, 0, 0}, {1, 0, 0}, 13), 300, 4, false),
+              b = s.add(line({0.3, -6, 1}, {0, 1, 0}, 13), 300, 4, false);
+    s.bind({a, 5.3}, {b, 5.1}, 1, mu);
+    for (std::size_t i = 0; i < s.state.place.size(); ++i) {
+      const Vec3& p = s.state.place[i];
+      s.state.velocity[i] = i < 13 ? Vec3{0.3, 0.05 * p.x, 0.2} : Vec3{-0.1, 0.3, 0.02 * p.y + 0.2};
+    }
+    YarnMotion motion = s.motion(MotionStepper::explicit_euler);
+    const Vec3 p = motion.momentum(), l = motion.angular_momentum();
+    const double energy = motion.energy().total(), place = motion.bindings().sliding[0].a.t;
+    for (int k = 0; k < 5000; ++k) {
+      motion.step(0.002);
+      ASSERT_LT(distance(motion.momentum(), p), 1e-9 * norm(p));
+      ASSERT_LT(motion.constraint_error(), 1e-3);
+      ASSERT_LT(motion.energy().total(), 1.005 * energy);
+      if (mu > 0) continue;
+      ASSERT_LT(distance(motion.angular_momentum(), l), 1e-9 * norm(l));
+      ASSERT_GT(motion.energy().total(), 0.995 * energy);
+    }
+    EXPECT_GT(std::abs(motion.bindings().sliding[0].a.t - place), 1) << "they have slid along each other";
+    if (mu > 0) {
+      EXPECT_LT(motion.energy().total(), 0.97 * energy);
+    }
   }
-  YarnMotion motion = s.motion(MotionStepper::explicit_euler);
-  const Vec3 p = motion.momentum(), l = motion.angular_momentum();
-  const double energy = motion.energy().total(), place = motion.bindings().sliding[0].a.t;
-  for (int k = 0; k < 5000; ++k) {
-    motion.step(0.002);
-    ASSERT_LT(distance(motion.momentum(), p), 1e-9 * norm(p));
-    ASSERT_LT(distance(motion.angular_momentum(), l), 1e-9 * norm(l));
-    ASSERT_NEAR(motion.energy().total(), energy, 0.005 * energy);
-    ASSERT_LT(motion.constraint_error(), 1e-3);
-  }
-  EXPECT_GT(std::abs(motion.bindings().sliding[0].a.t - place), 1) << "they have slid along each other";
 }
 
 // Yarn drawn over `pins` held pins that turn it by `turn` each, pulled by 1 at one end and by `pull` at the

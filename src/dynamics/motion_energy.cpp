@@ -92,7 +92,7 @@ void YarnMotion::prepare_friction(double dt) {
     // An explicit step holds only springs that are soft against the mass on them.
     if (options_.stepper == MotionStepper::explicit_euler)
       law.softness = std::max(law.softness, 8 * law.load * dt * dt * mobility(start_[k]));
-    law.normal = start_[k].normal;
+    law.normal = start_[k].normal / norm(start_[k].normal);
     law.slip = law.tangential(binding.slip);
     law.weight_a = start_[k].a.weights.value;
     law.weight_b = start_[k].b.weights.value;

@@ -1,6 +1,6 @@
 // Force over strain of a held plain piece pulled along its courses, its height held: by the stretch test of
 // src/experiments, and by yarns in motion with each of the three bindings, pulled slowly.
-// Usage: study_yarn_bindings FABRIC_FILE [WALES COURSES]
+// Usage: study_yarn_bindings FABRIC_FILE [WALES COURSES [STRAIN]]
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -16,7 +16,7 @@ using namespace loopwright;
 
 namespace {
 
-constexpr double most_strain = 0.2, step = 0.02;
+constexpr double step = 0.02;
 
 struct Pulled {
   std::vector<double> force;  // N/m at 0, step, 2 step ...
@@ -26,7 +26,7 @@ struct Pulled {
 };
 
 Pulled pulled(const RelaxResult& relaxed, const RelaxOptions& options, const std::string& binding,
-              double set) {
+              double set, double most_strain) {
   const Fabric& fabric = relaxed.fabric;
   const bool contact = binding == "contact";
   SplineModel model = spline_model(fabric, options.model.material, set, set > 0);
@@ -63,7 +63,7 @@ Pulled pulled(const RelaxResult& relaxed, const RelaxOptions& options, const std
       result.converged = result.converged && report.converged;
     }
     result.force.push_back(motion.course_force(fabric.width * (1 + strain)) * newton_per_m);
-    if (std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() > 20) break;
+    if (std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() > 60) break;
   }
   result.us_per_loop_step = 1e6 *
                             std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() /
@@ -75,9 +75,11 @@ Pulled pulled(const RelaxResult& relaxed, const RelaxOptions& options, const std
 }  // namespace
 
 int main(int count, char** words) {
-  if (count != 2 && count != 4) return std::fprintf(stderr, "study_yarn_bindings FILE [WALES COURSES]\n"), 1;
+  if (count != 2 && count != 4 && count != 5)
+    return std::fprintf(stderr, "study_yarn_bindings FILE [WALES COURSES [STRAIN]]\n"), 1;
+  const double most_strain = count == 5 ? std::atof(words[4]) : 0.2;
   FabricOptions size;
-  if (count == 4) size.size_wales = std::atoi(words[2]), size.size_courses = std::atoi(words[3]);
+  if (count >= 4) size.size_wales = std::atoi(words[2]), size.size_courses = std::atoi(words[3]);
   Diagnostics diagnostics(words[1]);
   Knitting knitting;
   knitting.program = read_program(words[1], diagnostics, size);
@@ -115,7 +117,7 @@ int main(int count, char** words) {
               {"barycentric, repose", "barycentric", 1},
               {"barycentric, straight", "barycentric", 0}};
   std::vector<Pulled> results;
-  for (const auto& run : runs) results.push_back(pulled(relaxed, options, run.binding, run.set));
+  for (const auto& run : runs) results.push_back(pulled(relaxed, options, run.binding, run.set, most_strain));
   std::printf("strain  stretch test  no plates  no plates, steps of %.3f", step / 4);
   for (const auto& run : runs) std::printf("  %s", run.name);
   std::printf("   (N/m)\n");

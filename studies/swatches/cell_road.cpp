@@ -86,7 +86,7 @@ double swatch_mass_g(const YarnGraph& graph, const PlacedPiece& piece, const Geo
   return length * options.diameter_mm * 1e-3 * machine.linear_density_tex * 1e-3;  // m, g
 }
 
-static RelaxOptions swatch_options(const Fabric& first, const Program& program, int most_iterations) {
+RelaxOptions swatch_options(const Fabric& first, const Program& program, int most_iterations) {
   RelaxOptions options = relax_options(first, program, {});
   options.model.free = {};   // the lattice of a cell, whatever edges the programme has
   options.tolerance = 1e-3;  // sizes do not change in the fourth figure below that
@@ -147,20 +147,24 @@ SwatchPrediction predict_by_cell(const std::filesystem::path& file, const Swatch
   if (!work.state.empty()) write_state(work.state, saved_state(relaxed, options, 1));
 
   if (work.stretched) {
-    // The load is borne by all courses and all wales of the whole swatch alike.
+    // One load at a time, borne by all courses or all wales of the whole swatch alike.
     constexpr int all_wales = 84, all_courses = 90;
     const double force_unit = options.model.material.reference_bend_N_m2 /
                               (first.diameter_mm * first.diameter_mm * 1e-6);  // B/d^2 in N
-    RelaxOptions loaded = options;
-    loaded.grow_in = false;
-    loaded.model.plates = relaxed.plates;
-    loaded.history = relaxed.history;
-    loaded.model.load = {machine.course_load_N / all_courses * p.cell_courses / force_unit,
-                         machine.wale_load_N / all_wales * p.cell_wales / force_unit, 0};
-    const RelaxResult stretched = relax(relaxed.fabric, loaded);
-    p.stretched_width_mm = inner(stretched.fabric.width, p.cell_wales, measured_wales);
-    p.stretched_height_mm = inner(stretched.fabric.height, p.cell_courses, measured_courses);
-    p.stretched_converged = stretched.converged;
+    const auto pulled = [&](const Measures& load) {
+      RelaxOptions loaded = options;
+      loaded.grow_in = false;
+      loaded.model.plates = relaxed.plates;
+      loaded.history = relaxed.history;
+      loaded.model.load = load;
+      return relax(relaxed.fabric, loaded);
+    };
+    const double load = machine.stretch_load_N / force_unit;
+    const RelaxResult wide = pulled({load / all_courses * p.cell_courses, 0, 0});
+    const RelaxResult high = pulled({0, load / all_wales * p.cell_wales, 0});
+    p.stretched_width_mm = inner(wide.fabric.width, p.cell_wales, measured_wales);
+    p.stretched_height_mm = inner(high.fabric.height, p.cell_courses, measured_courses);
+    p.stretched_converged = wide.converged && high.converged;
     p.seconds_stretch = now_s() - placed - p.seconds_relax;
   }
   return p;

@@ -42,6 +42,8 @@ double two_faced_share(const YarnGraph& graph, const Fabric& fabric);
 // All the yarn in its loops, floats and bed changes.
 double swatch_mass_g(const YarnGraph& graph, const PlacedPiece& piece, const GeometryOptions& options,
                      const MachineModel& machine);
+// How a cell is relaxed, whatever edges its programme has.
+RelaxOptions swatch_options(const Fabric& first, const Program& program, int most_iterations);
 // A cell of so many needles through what the machine does to it.
 KnittedRest relax_first(const Fabric& first, const YarnGraph& graph, const Program& program,
                         const MachineModel& machine, int needles, int most_iterations);

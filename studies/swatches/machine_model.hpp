@@ -23,8 +23,9 @@ struct MachineModel {
   double diameter_mm = 0.80, core_diameter_mm = 0.31, shell_kW_N_mm2 = 4.98e-4, shell_exponent = 2.4;
   double bend_stiffness_mN_mm2 = 12.7, friction = 0.25, linear_density_tex = 73.0;
   double set = 0.5;  // of the curvature that it has on the needles: what bent acrylic yarn loses in time
-  // Of the stretched swatches, 608 g: along the courses, borne by all of them, and along the wales.
-  double course_load_N = 5.96, wale_load_N = 0;
+  // Of the stretched swatches, 608 g: once along the courses, borne by all of them, which gives the width, and
+  // once along the wales, borne by all of these, which gives the height.
+  double stretch_load_N = 5.96;
 };
 
 // The programme with the machine's gauge and loops, and with this yarn on every carrier.

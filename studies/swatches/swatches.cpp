@@ -8,9 +8,10 @@
 //   study_swatches uncertainty FOLDER ROWS OUT N  swatches whose cells have N loops or fewer, with what is
 //   not
 //                                                 known well at its bounds: OUT/uncertainty.csv
+//   study_swatches response FOLDER NAME pattern|border    how its cell, or its border's, gives way to loads: a table
 //   study_swatches whole FOLDER NAME STATES       one whole swatch, border and all; what it was like after every
 //                                                 stage is kept in STATES, and a second run goes on from there
-// studies/swatches/run does all but the last two.
+// studies/swatches/run does all but the last three.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -20,6 +21,7 @@
 #include <sstream>
 
 #include "base/parallel.hpp"
+#include "cell_response.hpp"
 #include "net_road.hpp"
 #include "outputs/atomic_file.hpp"
 #include "outputs/write_plot_svg.hpp"
@@ -65,12 +67,17 @@ std::map<std::string, double> read_row(const std::filesystem::path& path) {
   return row;
 }
 
-int predict(const std::filesystem::path& folder, const std::string& name, const std::filesystem::path& rows,
-            const std::filesystem::path& table, bool with_cell) {
-  const auto swatches = measured_swatches(folder);
+const MeasuredSwatch& swatch_named(const std::vector<MeasuredSwatch>& swatches, const std::string& name) {
   const auto found = std::find_if(swatches.begin(), swatches.end(),
                                   [&name](const MeasuredSwatch& s) { return s.name == name; });
   if (found == swatches.end()) throw std::runtime_error("no swatch of that name: " + name);
+  return *found;
+}
+
+int predict(const std::filesystem::path& folder, const std::string& name, const std::filesystem::path& rows,
+            const std::filesystem::path& table, bool with_cell) {
+  const auto swatches = measured_swatches(folder);
+  const MeasuredSwatch* const found = &swatch_named(swatches, name);
   std::filesystem::create_directories(rows);
   const MachineModel machine;
   const SwatchPrediction net = predict_by_net(found->file, machine, read_loop_sizes(table));
@@ -259,11 +266,20 @@ int uncertainty(const std::filesystem::path& folder, const std::filesystem::path
   return 0;
 }
 
+int response(const std::filesystem::path& folder, const std::string& name, const std::string& part) {
+  const auto swatches = measured_swatches(folder);
+  const MeasuredSwatch& swatch = swatch_named(swatches, name);
+  std::printf("course_N_m,wale_N_m,shear_N_m,width_mm,height_mm,shear,converged\n");
+  for (const LoadedCell& c : cell_response(
+           swatch.file, part == "border" ? SwatchPart::side_border : SwatchPart::pattern, {}))
+    std::printf("%g,%g,%g,%.4f,%.4f,%.5f,%d\n", c.course_N_m, c.wale_N_m, c.shear_N_m, c.width_mm, c.height_mm,
+                c.shear, c.converged ? 1 : 0);
+  return 0;
+}
+
 int whole(const std::filesystem::path& folder, const std::string& name, const std::filesystem::path& states) {
   const auto swatches = measured_swatches(folder);
-  const auto found = std::find_if(swatches.begin(), swatches.end(),
-                                  [&name](const MeasuredSwatch& s) { return s.name == name; });
-  if (found == swatches.end()) throw std::runtime_error("no swatch of that name: " + name);
+  const MeasuredSwatch* const found = &swatch_named(swatches, name);
   std::filesystem::create_directories(states);
   std::printf("%s, measured %.1f x %.1f mm\n", name.c_str(), found->width_mm, found->height_mm);
   std::printf("stage         width  height   middle third     steps  interlacings  uncertified  seconds\n");
@@ -304,11 +320,15 @@ int run(const std::vector<std::string>& words) {
     set_thread_count(1);
     return uncertainty(words[1], words[2], words[3], std::stod(words[4]));
   }
+  if (words.size() == 4 && words[0] == "response" && (words[3] == "pattern" || words[3] == "border")) {
+    set_thread_count(1);
+    return response(words[1], words[2], words[3]);
+  }
   if (words.size() == 4 && words[0] == "whole") return whole(words[1], words[2], words[3]);
   if (words.size() == 4 && words[0] == "collect") return collect(words[1], words[2], words[3]);
   std::cerr
       << "study_swatches cells TABLE | list FOLDER | predict[-net] FOLDER NAME ROWS TABLE | collect FOLDER "
-         "ROWS OUT | uncertainty FOLDER ROWS OUT MOST_LOOPS | whole FOLDER NAME STATES\n";
+         "ROWS OUT | uncertainty FOLDER ROWS OUT MOST_LOOPS | response FOLDER NAME pattern|border | whole FOLDER NAME STATES\n";
   return 2;
 }
 

@@ -139,14 +139,6 @@ WholeSize measure_inner(const RelaxResult& at, const YarnGraph& graph, const Loo
   return size;
 }
 
-FlatPlates plates_round(const Fabric& first, double gap) {
-  double low = INFINITY, high = -INFINITY;
-  for (const FabricYarn& yarn : first.yarns)
-    for (const Vec3& p : yarn.control_points) low = std::min(low, p.z), high = std::max(high, p.z);
-  constexpr double stiffness = 50;  // as for cells
-  return {stiffness, (low + high - gap) / 2, (low + high + gap) / 2};
-}
-
 std::filesystem::path state_path(const WholeWork& work, WholeStage stage) {
   return work.states / (std::string(whole_stage_names[static_cast<std::size_t>(stage)]) + ".h5");
 }
@@ -170,7 +162,7 @@ std::vector<WholeSize> relax_whole(const std::filesystem::path& file, const Whol
   usual.most_iterations = work.most_iterations;
   usual.model.free = {false, false, false};
   // The moss border shows both faces, whatever the pattern.
-  usual.model.plates = plates_round(first, machine.two_layers_mm / d);
+  usual.model.plates = plates_apart(first, machine.two_layers_mm / d);
   const double force = usual.model.material.reference_bend_N_m2 / (d * d * 1e-6);  // B/d^2 in N
 
   std::vector<WholeSize> sizes;

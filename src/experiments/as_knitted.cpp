@@ -17,18 +17,6 @@ Fabric at_width(Fabric fabric, double width) {
   return fabric;
 }
 
-double middle_height(const Fabric& fabric) {
-  double low = INFINITY, high = -INFINITY;
-  for (const FabricYarn& yarn : fabric.yarns)
-    for (const Vec3& p : yarn.control_points) low = std::min(low, p.z), high = std::max(high, p.z);
-  return (low + high) / 2;
-}
-
-FlatPlates plates_apart(double middle, double gap) {
-  constexpr double stiffness = 50;  // as for finite pieces: yarn goes in by less than a tenth of a diameter
-  return {stiffness, middle - gap / 2, middle + gap / 2};
-}
-
 void check_history(const Fabric& first, const RelaxOptions& options, const KnittingHistory& history) {
   const auto require = [](bool holds, const char* what) {
     if (!holds) throw std::invalid_argument(what);
@@ -72,8 +60,7 @@ KnittedRest relax_as_knitted(const Fabric& first, const RelaxOptions& options,
   knitting.model.free.height = true;
   if (history.take_down_N > 0)
     knitting.model.load[1] = history.take_down_N * d * d * 1e-6 / options.model.material.reference_bend_N_m2;
-  if (history.flat_gap_mm > 0)
-    knitting.model.plates = plates_apart(middle_height(first), history.flat_gap_mm / d);
+  if (history.flat_gap_mm > 0) knitting.model.plates = plates_apart(first, history.flat_gap_mm / d);
   KnittedRest rest;
   rest.on_machine = relax(at_width(first, history.machine_width_mm / d), knitting);
 

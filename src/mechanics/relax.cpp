@@ -11,18 +11,6 @@
 namespace loopwright {
 namespace {
 
-FlatPlates plates_round(const Fabric& fabric, double room) {
-  double low = 0, high = 0;
-  bool first = true;
-  for (const FabricYarn& yarn : fabric.yarns)
-    for (const Vec3& p : yarn.control_points) {
-      low = first ? p.z : std::min(low, p.z);
-      high = first ? p.z : std::max(high, p.z);
-      first = false;
-    }
-  return {50, low - room, high + room};
-}
-
 RelaxResult relax_as_it_is(const Fabric& fabric, const RelaxOptions& options) {
   if (!(options.tolerance > 0) || !std::isfinite(options.tolerance))
     throw std::invalid_argument("the tolerance must be a positive number");
@@ -88,6 +76,21 @@ RelaxResult relax_as_it_is(const Fabric& fabric, const RelaxOptions& options) {
 }
 
 }  // namespace
+
+FlatPlates plates_round(const Fabric& fabric, double room) {
+  // Yarn goes in by less than a tenth of a diameter.
+  constexpr double stiffness = 50;
+  double low = INFINITY, high = -INFINITY;
+  for (const FabricYarn& yarn : fabric.yarns)
+    for (const Vec3& p : yarn.control_points) low = std::min(low, p.z), high = std::max(high, p.z);
+  return {stiffness, low - room, high + room};
+}
+
+FlatPlates plates_apart(const Fabric& fabric, double gap) {
+  const FlatPlates touching = plates_round(fabric, 0);
+  const double middle = (touching.low + touching.high) / 2;
+  return {touching.stiffness, middle - gap / 2, middle + gap / 2};
+}
 
 void add_counts(RelaxResult& to, const RelaxResult& from) {
   to.newton_iterations += from.newton_iterations;

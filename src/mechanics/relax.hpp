@@ -50,6 +50,10 @@ struct RelaxResult {
   std::string message;    // why it ended, in words
 };
 
+// Plates so far (d) beyond the outermost control points along z, and plates a gap apart round their middle.
+FlatPlates plates_round(const Fabric& fabric, double room);
+FlatPlates plates_apart(const Fabric& fabric, double gap);
+
 // Steps, iterations, factors and uncertified steps of a run that `to` went on from.
 void add_counts(RelaxResult& to, const RelaxResult& from);
 

@@ -8,8 +8,9 @@
 // Sliding ("free variables", Lenoir and others, GRAPHITE 2004): the places s, t of a contact on the two yarns
 // are unknowns without mass,
 //   C(q, s, t) = p_a(s) - p_b(t) - g n = 0,   p_a' . lambda = 0,   p_b' . lambda = 0
-// The last two say that the multiplier does no work along the yarns. They make lambda normal to both yarns
-// and r = p_a - p_b the shortest connection there, so that s and t follow from q, and one equation is left:
+// The last two say that the multiplier does no work along the yarns. Between their stops, where the valley of
+// the distance is not flat (docs/energies/bindings.md), they make lambda normal to both yarns and r = p_a -
+// p_b the shortest connection there, so that s and t follow from q, and one equation is left:
 //   D(q) = min_(s,t) |p_a(s) - p_b(t)| = g,   dD/dq = n (h_a(s) - h_b(t)),   n = r / D
 // Friction along the yarns is Coulomb's law with a short sticking spring (mechanics/energies/friction.hpp),
 // loaded by the multiplier of the step before.

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "dynamics/loose_yarns.hpp"
 #include "dynamics/structures.hpp"
 #include "dynamics/yarn_motion.hpp"
 #include "geometry/interlacing.hpp"
@@ -11,22 +12,6 @@
 
 namespace loopwright {
 namespace {
-
-int add_yarn(SplineModel& model, MotionState& state, const std::vector<Vec3>& points, bool held) {
-  SplineYarn yarn;
-  yarn.first = model.points;
-  yarn.points = static_cast<int>(points.size());
-  yarn.stretch_stiffness = 200;
-  yarn.bend_stiffness = 40;
-  set_rest_shape(yarn, points, 0, StretchLaw::mean);
-  set_mass_per_length(yarn, 1, points);
-  model.yarns.push_back(yarn);
-  model.points += yarn.points;
-  model.held.resize(static_cast<std::size_t>(model.points), held ? 1 : 0);
-  state.place.insert(state.place.end(), points.begin(), points.end());
-  state.velocity.resize(state.place.size());
-  return static_cast<int>(model.yarns.size()) - 1;
-}
 
 std::vector<Vec3> line(const Vec3& from, const Vec3& step, int points) {
   std::vector<Vec3> place;
@@ -43,8 +28,8 @@ TEST(SlidingRange, DerivativesOfTheDistance) {
     a[i].z -= 0.06 * a[i].x * a[i].x;
     b[i].z += 0.05 * b[i].y * b[i].y;
   }
-  add_yarn(model, state, a, false);
-  add_yarn(model, state, b, false);
+  add_yarn(model, state, a, 200, 40, false);
+  add_yarn(model, state, b, 200, 40, false);
   SlidingBinding free;
   free.a = {0, 2.1};
   free.b = {1, 2.2};
@@ -94,10 +79,10 @@ TEST(SlidingStops, NeighboursStayAThicknessApart) {
   for (const MotionStepper stepper : {MotionStepper::explicit_euler, MotionStepper::implicit_euler}) {
     SplineModel model;
     MotionState state;
-    const int rail = add_yarn(model, state, line({-6, 0, 0}, {1, 0, 0}, 19), true);
+    const int rail = add_yarn(model, state, line({-6, 0, 0}, {1, 0, 0}, 19), 200, 40, true);
     Bindings bindings;
     for (const double x : {0.3, 4.1}) {
-      const int rod = add_yarn(model, state, line({x, -3, 1}, {0, 1, 0}, 7), false);
+      const int rod = add_yarn(model, state, line({x, -3, 1}, {0, 1, 0}, 7), 200, 40, false);
       SlidingBinding binding;
       binding.a = {rod, 2};
       binding.b = {rail, x + 5};
@@ -136,8 +121,8 @@ TEST(SlidingGuards, AreSetWhereYarnsComeNearAndOnlyPress) {
   for (const MotionStepper stepper : {MotionStepper::explicit_euler, MotionStepper::implicit_euler}) {
     SplineModel model;
     MotionState state;
-    add_yarn(model, state, line({-6, 0, 0}, {1, 0, 0}, 15), true);
-    const int rod = add_yarn(model, state, line({1, -3, 1.6}, {0, 1, 0}, 7), false);
+    add_yarn(model, state, line({-6, 0, 0}, {1, 0, 0}, 15), 200, 40, true);
+    const int rod = add_yarn(model, state, line({1, -3, 1.6}, {0, 1, 0}, 7), 200, 40, false);
     model.drag = 1;
     model.gravity = {0, 0, -0.1};
     Bindings bindings;
@@ -171,8 +156,8 @@ TEST(SlidingGuards, BindingsPartBeyondTheirPull) {
   for (const double pull : {0.9, 1.1}) {
     SplineModel model;
     MotionState state;
-    add_yarn(model, state, line({-6, 0, 0}, {1, 0, 0}, 15), true);
-    const int rod = add_yarn(model, state, line({1, -3, 1}, {0, 1, 0}, 7), false);
+    add_yarn(model, state, line({-6, 0, 0}, {1, 0, 0}, 15), 200, 40, true);
+    const int rod = add_yarn(model, state, line({1, -3, 1}, {0, 1, 0}, 7), 200, 40, false);
     model.drag = 1;
     model.gravity = {0, 0, 0.25 * pull};  // on a mass of 4
     SlidingBinding binding;

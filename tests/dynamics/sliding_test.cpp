@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "dynamics/loose_yarns.hpp"
 #include "dynamics/yarn_motion.hpp"
 
 namespace loopwright {
@@ -13,21 +14,8 @@ struct Scene {
   MotionState state;
   Bindings bindings;
 
-  // Unstretched as it lies, mass 1 per length.
   int add(const std::vector<Vec3>& points, double EA, double B, bool held) {
-    SplineYarn yarn;
-    yarn.first = model.points;
-    yarn.points = static_cast<int>(points.size());
-    yarn.stretch_stiffness = EA;
-    yarn.bend_stiffness = B;
-    set_rest_shape(yarn, points, 0, StretchLaw::mean);
-    set_mass_per_length(yarn, 1, points);
-    model.yarns.push_back(yarn);
-    model.points += yarn.points;
-    model.held.resize(static_cast<std::size_t>(model.points), held ? 1 : 0);
-    state.place.insert(state.place.end(), points.begin(), points.end());
-    state.velocity.resize(state.place.size());
-    return static_cast<int>(model.yarns.size()) - 1;
+    return add_yarn(model, state, points, EA, B, held);
   }
   void bind(YarnPlace a, YarnPlace b, double distance, double friction) {
     SlidingBinding binding;

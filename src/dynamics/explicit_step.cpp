@@ -92,9 +92,9 @@ StepReport YarnMotion::explicit_step(double dt) {
           }
         for (std::size_t k = 0; k < slides; ++k) {
           const ShortestConnection& c = start_[k];
-          drift[k] = 0;
-          if (holds(k, c)) drift[k] = -back * (c.distance - bindings_.sliding[k].distance);
-          for (std::size_t i = 0; holds(k, c) && i < 8; ++i) {
+          const bool held = holds(k, c);
+          drift[k] = held ? -back * (c.distance - bindings_.sliding[k].distance) : 0;
+          for (std::size_t i = 0; held && i < 8; ++i) {
             const int point = i < 4 ? c.a.first + static_cast<int>(i) : c.b.first + static_cast<int>(i) - 4;
             const double w = i < 4 ? c.a.weights.value[i] : -c.b.weights.value[i - 4];
             for (std::size_t axis = 0; axis < 3; ++axis) {

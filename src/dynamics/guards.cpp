@@ -30,13 +30,9 @@ Line line(const SplineModel& model, std::span<const Vec3> place, int yarn, doubl
   return l;
 }
 
-double rest_length(const SplineModel& model, const YarnPlace& at) {
-  const std::vector<double>& rest = model.yarns[static_cast<std::size_t>(at.yarn)].rest_length;
-  return rest[std::min(static_cast<std::size_t>(at.t), rest.size() - 1)];
-}
-
 bool is_near(const SplineModel& model, const YarnPlace& p, const YarnPlace& q, double distance) {
-  return p.yarn == q.yarn && std::abs(p.t - q.t) * rest_length(model, p) < distance;
+  return p.yarn == q.yarn &&
+         std::abs(p.t - q.t) * model.yarns[static_cast<std::size_t>(p.yarn)].rest_length_at(p.t) < distance;
 }
 
 }  // namespace

@@ -39,10 +39,9 @@ std::vector<SlideStop> slide_stops(const SplineModel& model, std::span<const Sli
       const SlidingBinding& binding = bindings[end.binding];
       return model.yarns[static_cast<std::size_t>(end.is_a ? binding.b.yarn : binding.a.yarn)].diameter;
     };
-    const std::vector<double>& rest = model.yarns[y].rest_length;
     for (std::size_t k = 1; k < ends.size(); ++k) {
       const End &p = ends[k - 1], &q = ends[k];
-      const double length = rest[std::min(static_cast<std::size_t>(p.t), rest.size() - 1)];
+      const double length = model.yarns[y].rest_length_at(p.t);
       const double thickness = 0.5 * (diameter_of_other(p) + diameter_of_other(q)) / length;
       stops.push_back({p.binding, q.binding, p.is_a, q.is_a, std::min(thickness, q.t - p.t)});
     }

@@ -6,6 +6,7 @@
 // Units are any consistent ones; for cloth: lengths in d, energies in B/d, masses in rho d (rho: mass per
 // length of the reference yarn), so that the unit of time is d^2 sqrt(rho / B) (MotionUnits).
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -45,6 +46,9 @@ struct SplineYarn {
   std::vector<std::array<double, 4>> natural_curvature;  // kappa_0; empty: straight when unloaded
 
   int segments() const { return points - 3; }
+  double rest_length_at(double t) const {  // of the segment there, t a parameter of the spline
+    return rest_length[std::min(static_cast<std::size_t>(t), rest_length.size() - 1)];
+  }
 };
 
 struct SplineModel {

@@ -39,8 +39,9 @@ void check_history(const Fabric& first, const RelaxOptions& options, const Knitt
 
 Measures sum(const Measures& a, const Measures& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
 
-// From where it is under another load; counts are those of the whole way.
-RelaxResult goes_on(const RelaxResult& from, RelaxOptions options, const Measures& load) {
+}  // namespace
+
+RelaxResult relax_on(const RelaxResult& from, RelaxOptions options, const Measures& load) {
   options.model.load = load;
   options.history = from.history;
   RelaxResult next = relax(from.fabric, options);
@@ -48,8 +49,6 @@ RelaxResult goes_on(const RelaxResult& from, RelaxOptions options, const Measure
   next.converged = next.converged && from.converged;
   return next;
 }
-
-}  // namespace
 
 KnittedRest relax_as_knitted(const Fabric& first, const RelaxOptions& options,
                              const KnittingHistory& history) {
@@ -76,7 +75,7 @@ KnittedRest relax_as_knitted(const Fabric& first, const RelaxOptions& options,
     const double tension = history.hand_pull_N_m * d * 1e-3 / force;                   // B/d^3
     const Measures pull{tension * rest.relaxed.fabric.height, tension * rest.relaxed.fabric.width, 0},
         own = options.model.load;  // which the cloth bears before and after
-    for (const Measures& load : {sum(own, pull), own}) rest.relaxed = goes_on(rest.relaxed, released, load);
+    for (const Measures& load : {sum(own, pull), own}) rest.relaxed = relax_on(rest.relaxed, released, load);
   }
   return rest;
 }

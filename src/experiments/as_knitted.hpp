@@ -28,4 +28,8 @@ struct KnittedRest {
 KnittedRest relax_as_knitted(const Fabric& first, const RelaxOptions& options,
                              const KnittingHistory& history);
 
+// On from where a run ended, friction's history with it, under another load; counts are those of the whole
+// way, and it has converged if both have. `options.grow_in` must be off. Throws like relax().
+RelaxResult relax_on(const RelaxResult& from, RelaxOptions options, const Measures& load);
+
 }  // namespace loopwright

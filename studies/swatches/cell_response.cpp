@@ -59,11 +59,10 @@ std::vector<LoadedCell> cell_response(const std::filesystem::path& file, SwatchP
     RelaxOptions options = usual;
     options.grow_in = false;
     options.model.plates = let_go.plates;
-    options.history = from.history;
     options.model.free.skew = load[2] != 0;
     const double width = from.fabric.width * d / force, height = from.fabric.height * d / force;
-    options.model.load = {load[0] * height, load[1] * width, load[2] * width};
-    RelaxResult result = relax(from.fabric, options);
+    RelaxResult result =
+        relax_on(from, options, {load[0] * height, load[1] * width, load[2] * width});
     all.push_back({load[0], load[1], load[2], result.fabric.width * d * 1e3 / wales * measured_wales,
                    result.fabric.height * d * 1e3 / repeat->courses * measured_courses,
                    result.fabric.skew / result.fabric.height, result.converged});

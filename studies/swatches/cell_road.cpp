@@ -151,17 +151,12 @@ SwatchPrediction predict_by_cell(const std::filesystem::path& file, const Swatch
     constexpr int all_wales = 84, all_courses = 90;
     const double force_unit = options.model.material.reference_bend_N_m2 /
                               (first.diameter_mm * first.diameter_mm * 1e-6);  // B/d^2 in N
-    const auto pulled = [&](const Measures& load) {
-      RelaxOptions loaded = options;
-      loaded.grow_in = false;
-      loaded.model.plates = relaxed.plates;
-      loaded.history = relaxed.history;
-      loaded.model.load = load;
-      return relax(relaxed.fabric, loaded);
-    };
+    RelaxOptions loaded = options;
+    loaded.grow_in = false;
+    loaded.model.plates = relaxed.plates;
     const double load = machine.stretch_load_N / force_unit;
-    const RelaxResult wide = pulled({load / all_courses * p.cell_courses, 0, 0});
-    const RelaxResult high = pulled({0, load / all_wales * p.cell_wales, 0});
+    const RelaxResult wide = relax_on(relaxed, loaded, {load / all_courses * p.cell_courses, 0, 0});
+    const RelaxResult high = relax_on(relaxed, loaded, {0, load / all_wales * p.cell_wales, 0});
     p.stretched_width_mm = inner(wide.fabric.width, p.cell_wales, measured_wales);
     p.stretched_height_mm = inner(high.fabric.height, p.cell_courses, measured_courses);
     p.stretched_converged = wide.converged && high.converged;

@@ -7,6 +7,13 @@
 
 namespace loopwright {
 
+// Control points on a straight line.
+inline std::vector<Vec3> line(const Vec3& from, const Vec3& step, int points) {
+  std::vector<Vec3> place;
+  for (int i = 0; i < points; ++i) place.push_back(from + i * step);
+  return place;
+}
+
 // Adds a yarn, unstretched as it lies, of mass 1 per length; which one it is.
 inline int add_yarn(SplineModel& model, MotionState& state, const std::vector<Vec3>& points,
                     double stretch_stiffness, double bend_stiffness, bool held) {

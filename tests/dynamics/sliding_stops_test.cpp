@@ -13,12 +13,6 @@
 namespace loopwright {
 namespace {
 
-std::vector<Vec3> line(const Vec3& from, const Vec3& step, int points) {
-  std::vector<Vec3> place;
-  for (int i = 0; i < points; ++i) place.push_back(from + i * step);
-  return place;
-}
-
 // First and second derivatives of D, free, with a drag, and with one place or both at the end of a range.
 TEST(SlidingRange, DerivativesOfTheDistance) {
   SplineModel model;

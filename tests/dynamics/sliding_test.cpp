@@ -34,12 +34,6 @@ struct Scene {
   }
 };
 
-std::vector<Vec3> line(const Vec3& from, const Vec3& step, int points) {
-  std::vector<Vec3> place;
-  for (int i = 0; i < points; ++i) place.push_back(from + i * step);
-  return place;
-}
-
 // A stiff rod along y, of 12 segments, that lies across two held rails along x.
 constexpr double rod_length = 12, gravity = 0.5, friction = 0.3;
 constexpr double load = gravity * rod_length;  // on both rails

@@ -61,6 +61,19 @@ constexpr FreeMeasures no_frame{false, false, false};
 
 // Of yarn on yarn, where the yarn's data do not state it: the middle of what is measured.
 constexpr double usual_friction = 0.25;
+constexpr double usual_twist_stiffness = 0.3;  // of lively yarn, over B
+
+bool is_lively(const Fabric& fabric) {
+  return std::any_of(fabric.yarns.begin(), fabric.yarns.end(),
+                     [](const FabricYarn& yarn) { return yarn.liveliness != 0; });
+}
+
+// Lively yarn resists twist, whether or not its data say how much, and the wales of its cloth lean.
+void make_lively(const Fabric& fabric, ModelOptions& options) {
+  if (!is_lively(fabric)) return;
+  if (options.material.twist_stiffness == 0) options.material.twist_stiffness = usual_twist_stiffness;
+  options.free.skew = fabric.periodic;
+}
 
 Edges edges_of(const Program& program) { return program.settings.edges.value_or(Edges::bound_off); }
 
@@ -154,6 +167,8 @@ ImportedCurves import_curves(const std::filesystem::path& file, const PieceReque
   imported.options.model.material = yarn_material(yarn, fabric.diameter_mm);
   imported.options.model.material.friction =
       request.friction.value_or(yarn.friction_coefficient.value_or(usual_friction));
+  for (FabricYarn& each : fabric.yarns) each.liveliness = liveliness_of(yarn, fabric.diameter_mm);
+  make_lively(fabric, imported.options.model);
   imported.options.model.free = no_frame;
   imported.options.plate_room = -1;  // it need not be flat
   return imported;
@@ -165,6 +180,7 @@ RelaxOptions relax_options(const Fabric& fabric, const Program& program, const P
   options.model.material = yarn_material(yarn, fabric.diameter_mm);
   options.model.material.friction =
       request.friction.value_or(yarn.friction_coefficient.value_or(usual_friction));
+  make_lively(fabric, options.model);
   if (is_free_piece(program, request)) options.model.free = no_frame;
   options.set = program.settings.set;
   return options;
@@ -211,6 +227,7 @@ RelaxOptions relax_options(const State& state) {
   const std::optional<YarnMaterial> material = state_material(state, &missing);
   if (!material) number(missing.c_str());  // says so
   options.model.material = *material;
+  options.model.free.skew = state.fabric.periodic && is_lively(state.fabric);
   if (state.numbers.contains("plate_stiffness"))
     options.model.plates = {number("plate_stiffness"), number("plate_low"), number("plate_high")};
   options.grow_in = number("radius") < 1;
@@ -257,6 +274,7 @@ JsonObject results(const Assessment& assessment) {
                  {"Kc", m.Kc},
                  {"Kw", m.Kw},
                  {"Ks", m.Ks},
+                 {"wale_lean_degrees", m.wale_lean_degrees},
                  {"cover_factor", m.cover_factor},
                  {"tightness_factor_sqrt_tex_per_cm", known(m.tightness_factor)},
                  {"yarn_m", std::move(yarn_m)},

@@ -36,6 +36,7 @@ class Measurements(TypedDict, total=False):
     Kc: float
     Kw: float
     Ks: float
+    wale_lean_degrees: float
     cover_factor: float
     tightness_factor_sqrt_tex_per_cm: Optional[float]
     yarn_m: list[float]

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <numbers>
 #include <stdexcept>
 
 #include "experiments/cover.hpp"
@@ -40,6 +42,20 @@ double mean_loop_length(const Fabric& fabric) {
     ++count;
   }
   return count > 0 ? total / count : std::numeric_limits<double>::quiet_NaN();
+}
+
+double wale_lean_degrees(const Fabric& fabric) {
+  std::map<std::int32_t, Vec3> head;
+  for (const LoopSpan& span : fabric.loops)
+    head[span.loop.value] = position(fabric, fabric.yarns[static_cast<std::size_t>(span.yarn)], span.apex);
+  Vec3 way;
+  for (const PlacedInterlacing& each : fabric.interlacings) {
+    const auto parent = head.find(each.parent.value), child = head.find(each.child.value);
+    if (parent == head.end() || child == head.end()) continue;
+    way += child->second + fabric.lattice(each.shift[0], each.shift[1]) - parent->second;
+  }
+  if (way == Vec3{}) return std::numeric_limits<double>::quiet_NaN();
+  return std::atan2(way.x, way.y) * 180 / std::numbers::pi;
 }
 
 // What is measured of curves whose loops are not known.
@@ -107,6 +123,7 @@ Measurements measure(const Fabric& fabric) {
   m.Kc = m.loop_length_mm / m.course_spacing_mm;
   m.Kw = m.loop_length_mm / m.wale_spacing_mm;
   m.Ks = m.Kc * m.Kw;
+  m.wale_lean_degrees = wale_lean_degrees(fabric);
   m.cover_factor = cover_factor(fabric);
   measure_yarns(fabric, m);
   return m;

@@ -27,6 +27,9 @@ struct Measurements {
   // Munden's constants (Journal of the Textile Institute 50, T448, 1959): loop length over course spacing,
   // over wale spacing, and their product.
   double Kc = 0, Kw = 0, Ks = 0;
+  // By which wales lean to the right as one looks at the front (spirality): of the mean way from the head of
+  // a loop to the heads of those drawn through it; NaN without any.
+  double wale_lean_degrees = 0;
   double cover_factor = 0;            // share of the area that is covered by yarn, seen along z
   std::vector<YarnMeasurement> yarn;  // in the order of their first pieces
   double yarn_m = 0;                  // of all yarns, likewise

@@ -37,6 +37,9 @@ struct FabricYarn {
   double diameter = 1;             // in d
   double linear_density_tex = 0;   // 0: unknown
   double segment_rest_length = 1;  // in d, the same for every segment of the yarn
+  // Twist that it would lose if its ends were let go, rad/d; positive: right-handed (Z). Counts where the
+  // yarn resists twist (YarnMaterial::twist_stiffness).
+  double liveliness = 0;
   // Of set yarn: its curvature when unloaded, 1/d, at the 4 Gauss points of every segment
   // (0.0694, 0.3300, 0.6700, 0.9306 of its parameter); empty: straight.
   std::vector<std::array<double, 4>> natural_curvature{};

@@ -193,6 +193,7 @@ Fabric fit_fabric(const YarnCurves& curves, const YarnGraph& graph, const Geomet
     if (curve.carrier.valid() && carrier < options.yarn_colours.size()) {
       yarn.colour = options.yarn_colours[carrier];
       yarn.linear_density_tex = options.yarn_tex[carrier];
+      yarn.liveliness = options.yarn_liveliness[carrier];
     }
     const std::vector<double> rest = cumulative(curve.rest_length);
     const double fewest = curve.periodic ? 6 : 4;

@@ -1,8 +1,13 @@
 #include "geometry/geometry_options.hpp"
 
 #include <algorithm>
+#include <numbers>
 
 namespace loopwright {
+
+double liveliness_of(const YarnData& yarn, double diameter_mm) {
+  return 2 * std::numbers::pi * yarn.liveliness_per_m.value_or(0) * 1e-3 * diameter_mm;
+}
 
 GeometryOptions make_geometry_options(const Program& program) {
   const FabricSettings& settings = program.settings;
@@ -36,11 +41,13 @@ GeometryOptions make_geometry_options(const Program& program) {
   options.yarn_diameters.assign(carriers, 1);
   options.yarn_colours.assign(carriers, "");
   options.yarn_tex.assign(carriers, 0);
+  options.yarn_liveliness.assign(carriers, 0);
   for (std::size_t c = 0; c < program.yarns.size(); ++c) {
     const double mm = yarn_diameter_mm(program.yarns[c]);
     if (mm > 0) options.yarn_diameters[c] = mm / d;
     options.yarn_colours[c] = program.yarns[c].colour;
     options.yarn_tex[c] = program.yarns[c].linear_density_tex.value_or(0);
+    options.yarn_liveliness[c] = liveliness_of(program.yarns[c], d);
   }
   return options;
 }

@@ -25,11 +25,15 @@ struct GeometryOptions {
   std::vector<double> yarn_diameters;     // per carrier, in d
   std::vector<std::string> yarn_colours;  // per carrier, "#rrggbb" or empty
   std::vector<double> yarn_tex;           // per carrier, 0 if unknown
+  std::vector<double> yarn_liveliness;    // per carrier, rad/d, as FabricYarn has it
 
   // The template's yarn radius r: the template's loop takes 34 of them, so that it has the loop length
   // whatever the yarn's thickness is. Equal to 1/2 (true radius) for loop_length = 17.
   double shape_radius() const { return loop_length / 34; }
 };
+
+// FabricYarn::liveliness of yarn with these data, for this unit of length.
+double liveliness_of(const YarnData& yarn, double diameter_mm);  // rad/d
 
 // Defaults where the programme is silent:
 //   loop length  4.2 needle pitches if the gauge is known (7.1 mm at 15 needles per inch, DESIGN section 9),

@@ -16,7 +16,7 @@ int chunk_count(int nodes) { return std::clamp(nodes / 3000, 1, 16); }
 
 }  // namespace
 
-Assembly::Assembly(const YarnModel& model) : model_(model) {}
+Assembly::Assembly(const YarnModel& model) : model_(model), twist_(model) {}
 
 double Assembly::law_scale(int a, int b) const {
   return 0.5 * (model_.yarn_of(a).diameter + model_.yarn_of(b).diameter);
@@ -191,6 +191,15 @@ void Assembly::metric(BlockMatrix& matrix, const std::vector<float>& weights) co
   }
 }
 
+// The couple of every yarn on its control points, and how it changes with the turn of the whole yarn.
+void Assembly::add_dyads(Unknowns& gradient, BlockMatrix& hessian) {
+  hessian.dyads = twist_.dyads(extended_, fraction_);
+  std::size_t next = 0;
+  for (std::size_t y = 0; y < model_.yarns.size(); ++y)
+    if (model_.yarns[y].twist_stiffness > 0) hessian.dyads[next++].add_to(twist_.couple(y), gradient);
+  twist_.settle();
+}
+
 EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMatrix* matrix,
                             std::vector<double>* of_segments) {
   prepare(state);
@@ -212,6 +221,7 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
     friction_.assign(model_.friction > 0 ? active_.size() : 0, {});
   }
 
+  if (twist_.counts()) twist_.measure(state, extended_);
   if (!matrix) find_moved();
   const int chunks = chunk_count(model_.nodes);
   std::vector<Chunk> partial(static_cast<std::size_t>(chunks));
@@ -238,6 +248,10 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
       if (gradient) gradient->g[k] += p.measures[k];
     if (matrix)
       for (std::size_t k = 0; k < 9; ++k) matrix->corner[k] += p.corner[k];
+  }
+  if (twist_.counts()) {
+    energy.twist = twist_.energy();
+    if (matrix) add_dyads(*gradient, *matrix);
   }
   for (std::size_t i = 0; i < model_.point_loads.size(); ++i) {
     const Vec3& f = model_.point_loads[i];
@@ -273,6 +287,12 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
     for (std::size_t m = 0; m < 3; ++m)
       for (std::size_t l = 0; l < 3; ++l)
         if (!free[m] || !free[l]) matrix->corner[3 * m + l] = m == l ? 1 : 0;
+    for (Dyad& dyad : matrix->dyads) {
+      for (std::size_t i = 0; i < dyad.u.size(); ++i)
+        if (model_.held[static_cast<std::size_t>(dyad.first) + i]) dyad.u[i] = {};
+      for (std::size_t m = 0; m < 3; ++m)
+        if (!free[m]) dyad.g[m] = 0;
+    }
   }
   return energy;
 }

@@ -12,6 +12,7 @@
 #include "mechanics/energies/friction.hpp"
 #include "mechanics/linear/block_matrix.hpp"
 #include "mechanics/yarn_model.hpp"
+#include "mechanics/yarn_twist.hpp"
 
 namespace loopwright {
 
@@ -19,10 +20,10 @@ struct SegmentLanes;
 struct SegmentLanesTerm;
 
 struct EnergyParts {
-  double stretch = 0, bend = 0, contact = 0, plates = 0;
+  double stretch = 0, bend = 0, twist = 0, contact = 0, plates = 0;
   double friction = 0;  // work against friction since the last Hessian: not stored in the cloth
   double load = 0;      // of the loads on measures and points: minus load times place
-  double stored() const { return stretch + bend + contact + plates; }
+  double stored() const { return stretch + bend + twist + contact + plates; }
   double total() const { return stored() + friction + load; }
 };
 
@@ -85,9 +86,11 @@ class Assembly {
   void gather(const std::int32_t* segments, std::size_t count, bool fractions, SegmentLanes& to) const;
   void add_segments(Chunk& chunk) const;
   void add_plates(int segment, Chunk& chunk) const;
+  void add_twist(int segment, Chunk& chunk) const;
   bool contact_input(const SegmentPair& pair, const Vec3& image, double reach, ContactPairInput& in) const;
   void add_contacts(Chunk& chunk);
   FrictionContact add_friction(const SegmentPair& pair, const YarnState& state, ContactTerm& term) const;
+  void add_dyads(Unknowns& gradient, BlockMatrix& hessian);
   void scatter(const SegmentLanesTerm& term, std::size_t lane, int segment, Chunk& chunk) const;
   void scatter(const ContactTerm& term, const SegmentPair& pair, Chunk& chunk) const;
   Vec3 remembered_slip(const SegmentPair& pair) const;
@@ -101,6 +104,7 @@ class Assembly {
   double law_scale(int segment_a, int segment_b) const;
 
   const YarnModel& model_;
+  YarnTwist twist_;
   std::vector<SegmentPair> pairs_;
   // Where the extended points and the lattice were when these were found; how far the samples of each segment
   // have moved since, at most.

@@ -128,6 +128,7 @@ void Assembly::add_segments(Chunk& chunk) const {
     if (chunk.matrix) UpperBlocks(*chunk.matrix, diagonal_, chunk.low, chunk.high).fetch(nodes_of(e));
     if (count == lanes) flush();
     if (model_.plates.stiffness > 0) add_plates(e, chunk);
+    if (chunk.matrix && model_.yarn_of(e).twist_stiffness > 0) add_twist(e, chunk);
   }
   flush();
 }
@@ -173,6 +174,39 @@ void Assembly::add_plates(int segment, Chunk& chunk) const {
       .each_own(n, [&](std::size_t k, std::size_t l, Block& to, bool) {
         to[8] += pushed.hessian[3 * k + 2][3 * l + 2];
       });
+}
+
+// The yarn's couple times the second derivatives of its turn.
+void Assembly::add_twist(int segment, Chunk& chunk) const {
+  const auto f = static_cast<std::size_t>(model_.first[static_cast<std::size_t>(segment)]);
+  const double couple =
+      twist_.couple(static_cast<std::size_t>(model_.yarn_of_segment[static_cast<std::size_t>(segment)]));
+  SegmentBlocks<double> blocks = turn_hessian(arc_ends(&extended_[f]));
+  for (Block& block : blocks)
+    for (double& entry : block) entry *= couple;
+  const FourNodes n = nodes_of(segment);
+  UpperBlocks(*chunk.matrix, diagonal_, chunk.low, chunk.high)
+      .each_own(n, [&](std::size_t k, std::size_t l, Block& to, bool transposed) {
+        const Block& block = blocks[block_of_points[k][l]];
+        for (std::size_t c = 0; c < 9; ++c) to[c] += block[transposed ? 3 * (c % 3) + c / 3 : c];
+      });
+  const bool whole = chunk.owns(n[0]);
+  for (std::size_t k = 0; k < 4; ++k) {
+    if (!whole && !chunk.owns(n[k])) continue;
+    Block column{};
+    for (std::size_t l = 0; l < 4; ++l) {
+      const Block& block = blocks[block_of_points[k][l]];
+      const Fraction& fraction = fraction_[f + l];
+      for (std::size_t d = 0; d < 3; ++d) {
+        const double by_x = block[k <= l ? 3 * d : d], by_y = block[k <= l ? 3 * d + 1 : 3 + d];
+        column[3 * d] += by_x * fraction[0];
+        column[3 * d + 1] += by_y * fraction[1];
+        column[3 * d + 2] += by_x * fraction[1];
+      }
+    }
+    if (chunk.owns(n[k])) add_to(chunk.matrix->border[static_cast<std::size_t>(n[k])], column);
+    if (whole) add_measures_transposed(fraction_[f + k], column, chunk.corner);
+  }
 }
 
 // Reads the pair's samples; false where its boxes are too far apart for contact.

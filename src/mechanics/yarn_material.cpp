@@ -25,6 +25,8 @@ YarnMaterial yarn_material(const YarnData& yarn, double diameter_mm) {
     if (yarn.stretch_stiffness_cN)
       material.stretch_stiffness =
           positive(*yarn.stretch_stiffness_cN, "stretch stiffness") * 1e-2 * d * d / B;
+    if (yarn.twist_stiffness_mN_mm2)
+      material.twist_stiffness = positive(*yarn.twist_stiffness_mN_mm2, "twist stiffness") * 1e-3 / B;
     if (yarn.shell_stiffness)
       material.contact.stiffness = positive(*yarn.shell_stiffness, "shell stiffness") * std::pow(d, 5) / B;
   }

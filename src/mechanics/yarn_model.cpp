@@ -17,6 +17,8 @@ void check_material(const YarnMaterial& m) {
   const auto positive = [](double v) { return std::isfinite(v) && v > 0; };
   require(positive(m.stretch_stiffness), "stretch stiffness must be a positive number");
   require(positive(m.bend_stiffness), "bend stiffness must be a positive number");
+  require(std::isfinite(m.twist_stiffness) && m.twist_stiffness >= 0,
+          "twist stiffness must be a number, 0 or more");
   require(positive(m.contact.outer) && std::isfinite(m.contact.core) && m.contact.core < m.contact.outer,
           "the outer diameter must be positive and the contact core thinner than it");
   require(positive(m.contact.stiffness), "contact stiffness must be a positive number");
@@ -36,6 +38,7 @@ void check_yarn(const Fabric& fabric, const FabricYarn& yarn) {
           "the rest length of a yarn must be a positive number");
   require(std::isfinite(yarn.diameter) && yarn.diameter > 0,
           "the diameter of a yarn must be a positive number");
+  require(std::isfinite(yarn.liveliness), "the liveliness of a yarn must be a finite number");
   for (const Vec3& p : yarn.control_points) require(is_finite(p), "a control point is not a finite number");
   require(yarn.natural_curvature.empty() ||
               yarn.natural_curvature.size() == static_cast<std::size_t>(yarn.segments()),
@@ -68,6 +71,8 @@ YarnModel build_yarn_model(const Fabric& fabric, const ModelOptions& options) {
   model.load = options.load;
   model.contact = options.material.contact;
   model.friction = options.material.friction;
+  std::vector<int> loops_of(fabric.yarns.size(), 0);
+  for (const LoopSpan& span : fabric.loops) ++loops_of[static_cast<std::size_t>(span.yarn)];
   double longest_segment = 0;
   for (const FabricYarn& yarn : fabric.yarns) {
     check_yarn(fabric, yarn);
@@ -86,6 +91,10 @@ YarnModel build_yarn_model(const Fabric& fabric, const ModelOptions& options) {
     // yarn whose fibres slide (physics of B_min ~ linear density).
     y.stretch_stiffness = options.material.stretch_stiffness * area;
     y.bend_stiffness = options.material.bend_stiffness * area;
+    y.twist_stiffness = options.material.twist_stiffness * area;
+    y.liveliness = yarn.liveliness;
+    if (const int loops = loops_of[model.yarns.size()]; loops > 0)
+      y.segments_per_loop = std::max(1, y.segments / loops);
     longest_segment = std::max(longest_segment, y.rest_length);
 
     const int ghosts = yarn.periodic ? 3 : 0;

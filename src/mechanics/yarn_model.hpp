@@ -28,6 +28,7 @@ struct FlatPlates {
 struct YarnMaterial {
   double stretch_stiffness = 3000;  // EA d^2 / B
   double bend_stiffness = 1;        // B of this yarn over B of the reference yarn
+  double twist_stiffness = 0;       // C / B; 0: turns about itself without resistance
   ContactLaw contact;               // outer diameter 1 for the reference yarn
   double friction = 0;              // coefficient of yarn on yarn; 0: frictionless
   // B of the reference yarn in N m^2, by which the model's forces become newtons; 0: not known.
@@ -43,7 +44,9 @@ struct YarnModel {
     std::array<int, 2> shift{0, 0};
     double rest_length = 1;  // of a segment
     double diameter = 1;
-    double stretch_stiffness = 3000, bend_stiffness = 1;
+    double stretch_stiffness = 3000, bend_stiffness = 1, twist_stiffness = 0;
+    double liveliness = 0;      // rad/d, as in FabricYarn
+    int segments_per_loop = 0;  // about; 0: it has no loops
   };
   std::vector<Yarn> yarns;
   int nodes = 0, segments = 0, extended = 0;

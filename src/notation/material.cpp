@@ -20,6 +20,8 @@ constexpr std::array yarn_keys{
     YarnKey{"core-diameter", &YarnData::core_diameter_mm, Dimension::length},
     YarnKey{"bend-stiffness", &YarnData::bend_stiffness_mN_mm2, Dimension::bend_stiffness},
     YarnKey{"stretch-stiffness", &YarnData::stretch_stiffness_cN, Dimension::force},
+    YarnKey{"twist-stiffness", &YarnData::twist_stiffness_mN_mm2, Dimension::bend_stiffness},
+    YarnKey{"liveliness", &YarnData::liveliness_per_m, Dimension::twist},
     YarnKey{"shell-stiffness", &YarnData::shell_stiffness, Dimension::shell_stiffness},
     YarnKey{"shell-exponent", &YarnData::shell_exponent, Dimension::share},
     YarnKey{"friction", &YarnData::friction_coefficient, Dimension::share},
@@ -50,7 +52,8 @@ void set_yarn_value(std::string_view name, std::string_view value, SourceLocatio
     const Quantity quantity = parsed_quantity(value, key.dimension);
     if (!quantity.problem.empty()) {
       diagnostics.error(at, quantity.problem);
-    } else if (quantity.value < 0 || (quantity.value == 0 && name != "friction")) {
+    } else if (key.dimension != Dimension::twist &&
+               (quantity.value < 0 || (quantity.value == 0 && name != "friction"))) {
       diagnostics.error(at, std::string(name) + " must be greater than zero, not " + quoted(value));
     } else {
       yarn.*key.value = quantity.value;

@@ -64,6 +64,9 @@ struct YarnData {
   std::optional<double> core_diameter_mm;  // hard core
   std::optional<double> bend_stiffness_mN_mm2;
   std::optional<double> stretch_stiffness_cN;
+  std::optional<double> twist_stiffness_mN_mm2;
+  // Turns per metre by which a free piece of it would turn back: positive for Z twist, negative for S twist.
+  std::optional<double> liveliness_per_m;
   std::optional<double> shell_stiffness;  // contact law: kc, N/mm^3
   std::optional<double> shell_exponent;   // contact law: p
   std::optional<double> friction_coefficient;

@@ -203,6 +203,9 @@ constexpr std::array units{
     Unit{Dimension::bend_stiffness, "gfcm2", 980.665},
     Unit{Dimension::shell_stiffness, "N/mm3", 1},
     Unit{Dimension::shell_stiffness, "N/m3", 1e-9},
+    Unit{Dimension::twist, "tpm", 1},
+    Unit{Dimension::twist, "turns/m", 1},
+    Unit{Dimension::twist, "tpi", 1 / 0.0254},
     Unit{Dimension::share, "", 1},
     Unit{Dimension::share, "%", 0.01},
     Unit{Dimension::gauge, "", 1},
@@ -221,6 +224,8 @@ std::string_view examples(Dimension dimension) {
       return "mN mm^2, N m^2 or gf cm^2, e.g. '10 mN mm^2'";
     case Dimension::shell_stiffness:
       return "N/mm^3 or N/m^3, e.g. '6e-4 N/mm^3'";
+    case Dimension::twist:
+      return "tpm (turns per metre) or tpi, e.g. '150 tpm', negative for S twist";
     case Dimension::share:
       return "a share without unit or %, e.g. '0.05' or '5 %'";
     case Dimension::gauge:

@@ -78,8 +78,9 @@ enum class Dimension {
   length,           // mm
   linear_density,   // tex
   force,            // cN
-  bend_stiffness,   // mN mm^2
+  bend_stiffness,   // mN mm^2; of twist as well
   shell_stiffness,  // N/mm^3
+  twist,            // turns per metre
   share,            // 1; `%` is understood
   gauge             // needles per inch; the unit may be left out
 };

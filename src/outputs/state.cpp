@@ -125,6 +125,9 @@ void put_yarns(hdf5::Writer& out, const Fabric& fabric) {
   out.column("yarns/segment_rest_length",
              gathered<double>(yarns, [](const Y& y) { return y.segment_rest_length; }), 1, "d");
   put_set(out, fabric);
+  if (std::any_of(yarns.begin(), yarns.end(), [](const Y& y) { return y.liveliness != 0; }))
+    out.column("yarns/liveliness", gathered<double>(yarns, [](const Y& y) { return y.liveliness; }), 1,
+               "rad/d");
   out.column("yarns/periodic", gathered<std::uint8_t>(yarns, [](const Y& y) { return y.periodic ? 1 : 0; }));
   out.column("yarns/shift", shifts(yarns), 2);
   out.column("yarns/control_points",

@@ -77,8 +77,11 @@ void read_yarns(const Reader& in, std::vector<FabricYarn>& yarns) {
   const auto diameters = in.doubles("yarns/diameter"), densities = in.doubles("yarns/linear_density");
   const auto lengths = in.doubles("yarns/segment_rest_length");
   const auto periodic = in.octets("yarns/periodic");
+  const auto liveliness =
+      in.has("yarns/liveliness") ? in.doubles("yarns/liveliness") : std::vector<double>(ids.size(), 0);
   const auto shift = in.integers("yarns/shift", 2), counts = in.integers("yarns/control_points");
-  require_rows("yarns", ids.size(), carriers, colours, diameters, densities, lengths, periodic, counts);
+  require_rows("yarns", ids.size(), carriers, colours, diameters, densities, lengths, periodic, counts,
+               liveliness);
   require_rows("yarns", 2 * ids.size(), shift);
   const auto places = in.doubles("control_points/position", 3);
   const auto held = in.octets("control_points/held");
@@ -93,6 +96,7 @@ void read_yarns(const Reader& in, std::vector<FabricYarn>& yarns) {
     yarn.diameter = diameters[y];
     yarn.linear_density_tex = densities[y];
     yarn.segment_rest_length = lengths[y];
+    yarn.liveliness = liveliness[y];
     yarn.periodic = flag(periodic[y], "yarns/periodic");
     yarn.shift = pair_at(shift, y);
     if (counts[y] < 0 || static_cast<std::size_t>(counts[y]) > held.size() - next)
@@ -172,6 +176,7 @@ std::string yarn_fault(const FabricYarn& yarn, bool fabric_is_periodic) {
     return "its segments' rest length is not a positive number";
   if (!(yarn.linear_density_tex >= 0) || !std::isfinite(yarn.linear_density_tex))
     return "its linear density is negative";
+  if (!std::isfinite(yarn.liveliness)) return "its liveliness is not a number";
   if (yarn.periodic && !fabric_is_periodic && yarn.shift != std::array<int, 2>{0, 0})
     return "it repeats with a lattice that the fabric does not have";
   if (yarn.segments() < 1) return "it has too few control points";

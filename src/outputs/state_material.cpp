@@ -25,6 +25,8 @@ std::optional<YarnMaterial> state_material(const State& state, std::string* miss
   }
   if (const auto bend = state.numbers.find("reference_bend_N_m2"); bend != state.numbers.end())
     material.reference_bend_N_m2 = bend->second;
+  if (const auto twist = state.numbers.find("twist_stiffness"); twist != state.numbers.end())
+    material.twist_stiffness = twist->second;
   return material;
 }
 
@@ -36,6 +38,7 @@ void set_state_material(State& state, const YarnMaterial& material) {
   state.numbers["contact_stiffness"] = material.contact.stiffness;
   state.numbers["contact_exponent"] = material.contact.exponent;
   state.numbers["friction"] = material.friction;
+  if (material.twist_stiffness > 0) state.numbers["twist_stiffness"] = material.twist_stiffness;
   if (material.reference_bend_N_m2 > 0) state.numbers["reference_bend_N_m2"] = material.reference_bend_N_m2;
 }
 

@@ -54,6 +54,19 @@ void axpy(double s, const Unknowns& x, Unknowns& y) {
   for (std::size_t k = 0; k < 3; ++k) y.g[k] += s * x.g[k];
 }
 
+double Dyad::dot(const Unknowns& x) const {
+  double sum = 0;
+  for (std::size_t i = 0; i < u.size(); ++i)
+    sum += loopwright::dot(u[i], x.u[static_cast<std::size_t>(first) + i]);
+  for (std::size_t k = 0; k < 3; ++k) sum += g[k] * x.g[k];
+  return sum;
+}
+
+void Dyad::add_to(double times, Unknowns& x) const {
+  for (std::size_t i = 0; i < u.size(); ++i) x.u[static_cast<std::size_t>(first) + i] += times * u[i];
+  for (std::size_t k = 0; k < 3; ++k) x.g[k] += times * g[k];
+}
+
 void multiply(const BlockMatrix& matrix, double shift, const Unknowns& x, Unknowns& y) {
   const auto rows = static_cast<std::size_t>(matrix.rows());
   y.u.resize(rows);
@@ -91,6 +104,7 @@ void multiply(const BlockMatrix& matrix, double shift, const Unknowns& x, Unknow
     for (std::size_t l = 0; l < 3; ++l) y.g[k] += matrix.corner[3 * k + l] * x.g[l];
   if (shift != 0)
     for (std::size_t k = 0; k < 3; ++k) y.g[k] += shift * matrix.measure_metric[k] * x.g[k];
+  for (const Dyad& dyad : matrix.dyads) dyad.add_to(dyad.factor * dyad.dot(x), y);
 }
 
 double shift_against(const BlockMatrix& matrix, const Unknowns& x) {

@@ -16,6 +16,25 @@ namespace loopwright {
 using Block = std::array<double, 9>;            // row-major 3 x 3
 using FourNodes = std::array<std::int32_t, 4>;  // control points of a segment
 
+// A vector of unknowns: one displacement per control point and the measures.
+struct Unknowns {
+  std::vector<Vec3> u;
+  Measures g{};
+};
+double dot(const Unknowns& a, const Unknowns& b);
+void axpy(double s, const Unknowns& x, Unknowns& y);  // y += s x
+
+// factor v v', v zero outside a run of control points: what couples all of a yarn at once.
+struct Dyad {
+  double factor = 0;
+  int first = 0;        // control point of u[0]
+  std::vector<Vec3> u;  // v there
+  Measures g{};
+
+  double dot(const Unknowns& x) const;           // v'x
+  void add_to(double times, Unknowns& x) const;  // x += times v
+};
+
 struct BlockMatrix {
   std::vector<std::int32_t> row_start;  // [rows + 1]
   std::vector<std::int32_t> column;     // sorted in a row
@@ -27,6 +46,8 @@ struct BlockMatrix {
   std::vector<double> metric;
   Measures measure_metric{};
 
+  std::vector<Dyad> dyads;  // are added to all of it
+
   // [rows * rows] of small matrices: the place of a block, or -1; larger ones are searched.
   std::vector<std::int32_t> places;
 
@@ -35,15 +56,7 @@ struct BlockMatrix {
   std::size_t place(std::int32_t row, std::int32_t col) const;
 };
 
-// A vector of unknowns: one displacement per control point and the measures.
-struct Unknowns {
-  std::vector<Vec3> u;
-  Measures g{};
-};
-double dot(const Unknowns& a, const Unknowns& b);
-void axpy(double s, const Unknowns& x, Unknowns& y);  // y += s x
-
-// y = (A + shift D) x, with border and corner; D is the metric.
+// y = (A + shift D) x, with border, corner and dyads; D is the metric.
 void multiply(const BlockMatrix& matrix, double shift, const Unknowns& x, Unknowns& y);
 inline void multiply(const BlockMatrix& matrix, const Unknowns& x, Unknowns& y) { multiply(matrix, 0, x, y); }
 

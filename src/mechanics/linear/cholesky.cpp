@@ -1,5 +1,6 @@
 #include "mechanics/linear/cholesky.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <mutex>
@@ -121,6 +122,8 @@ struct Cholesky::Factor {
   std::array<std::vector<double>, 3> border_solution;  // A^-1 C
   std::vector<Block> border;
   Block corner_inverse{};
+  std::vector<Unknowns> dyad_solution;  // K^-1 v of every dyad, K: the matrix without them
+  Eigen::LLT<Eigen::MatrixXd> capacity;
 #ifdef LOOPWRIGHT_HAS_CHOLMOD
   SupernodalSingle single;  // in use after compact()
   cholmod_common common{};
@@ -320,10 +323,44 @@ bool Cholesky::factor(const BlockMatrix& m, double shift) {
       for (std::size_t i = 0; i < f.border.size(); ++i)
         for (std::size_t d = 0; d < 3; ++d)
           s[3 * k + l] -= f.border[i][3 * d + k] * f.border_solution[l][3 * i + d];
-  return invert3(s, f.corner_inverse);
+  return invert3(s, f.corner_inverse) && factor_dyads(m);
+}
+
+// (K + V F V')^-1 = K^-1 - Z (F^-1 + V'Z)^-1 Z',  Z = K^-1 V
+bool Cholesky::factor_dyads(const BlockMatrix& m) {
+  Factor& f = *factor_;
+  f.dyad_solution.clear();
+  const auto count = static_cast<Eigen::Index>(m.dyads.size());
+  if (count == 0) return true;
+  Unknowns v;
+  for (const Dyad& dyad : m.dyads) {
+    v.u.assign(static_cast<std::size_t>(m.rows()), Vec3{});
+    v.g = {};
+    dyad.add_to(1, v);
+    solve_without_dyads(v, f.dyad_solution.emplace_back());
+  }
+  Eigen::MatrixXd capacity(count, count);
+  for (Eigen::Index i = 0; i < count; ++i)
+    for (Eigen::Index j = 0; j < count; ++j)
+      capacity(i, j) =
+          m.dyads[static_cast<std::size_t>(i)].dot(f.dyad_solution[static_cast<std::size_t>(j)]) +
+          (i == j ? 1 / m.dyads[static_cast<std::size_t>(i)].factor : 0);
+  f.capacity.compute(capacity);
+  return f.capacity.info() == Eigen::Success;
 }
 
 void Cholesky::solve(const Unknowns& b, Unknowns& x) {
+  Factor& f = *factor_;
+  const auto count = static_cast<Eigen::Index>(f.dyad_solution.size());
+  Eigen::VectorXd share(count);
+  for (Eigen::Index i = 0; i < count; ++i) share[i] = dot(f.dyad_solution[static_cast<std::size_t>(i)], b);
+  solve_without_dyads(b, x);
+  if (count == 0) return;
+  share = f.capacity.solve(share);
+  for (Eigen::Index i = 0; i < count; ++i) axpy(-share[i], f.dyad_solution[static_cast<std::size_t>(i)], x);
+}
+
+void Cholesky::solve_without_dyads(const Unknowns& b, Unknowns& x) {
   Factor& f = *factor_;
   std::vector<double> rhs(static_cast<std::size_t>(f.unknowns)), u(rhs.size());
   for (std::size_t i = 0; i < b.u.size(); ++i)

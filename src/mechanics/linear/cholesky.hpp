@@ -2,6 +2,7 @@
 // interface:
 //   [ A + shift D   C            ]
 //   [ C'            G + shift Dm ]
+// Its dyads are reckoned in afterwards (Woodbury's formula), so it has to be positive definite without them.
 // CHOLMOD (supernodal) where the build found it, otherwise Eigen's simplicial factorisation.
 #pragma once
 #include <memory>
@@ -36,6 +37,8 @@ class Cholesky {
 
  private:
   struct Factor;
+  void solve_without_dyads(const Unknowns& b, Unknowns& x);
+  bool factor_dyads(const BlockMatrix& matrix);
   std::unique_ptr<Factor> factor_;
 };
 

@@ -55,6 +55,19 @@ bool DenseCholesky::factor(const BlockMatrix& m, double shift, Unknowns& against
   for (std::size_t k = 0; k < 3; ++k)
     for (std::size_t l = k; l < 3; ++l)
       column(3 * rows + k)[3 * rows + l] = m.corner[3 * k + l] + (k == l ? shift * m.measure_metric[k] : 0);
+  for (const Dyad& dyad : m.dyads) {
+    // Where it is not zero: its control points, then the measures.
+    const std::size_t begin = 3 * static_cast<std::size_t>(dyad.first), count = 3 * dyad.u.size();
+    const auto entry = [&](std::size_t k) {
+      return k < count ? dyad.u[k / 3][static_cast<int>(k % 3)] : dyad.g[k - count];
+    };
+    const auto place = [&](std::size_t k) { return k < count ? begin + k : 3 * rows + k - count; };
+    for (std::size_t k = 0; k < count + 3; ++k) {
+      const double by = dyad.factor * entry(k);
+      double* const to = column(place(k));
+      for (std::size_t l = k; l < count + 3; ++l) to[place(l)] += by * entry(l);
+    }
+  }
 #ifdef LOOPWRIGHT_HAS_CHOLMOD
   int info = 0;
   dpotrf_("L", &order_, entry_.data(), &order_, &info);

@@ -248,6 +248,7 @@ void add_commands(CLI::App& app, Commands& commands, Action& action) {
       ->capture_default_str();
   relax->add_option("--most-iterations", commands.relax.most_iterations, "Stop after so many Newton steps")
       ->check(CLI::Range(1, 1'000'000));
+  add_segments_option(*relax, commands.relax.piece);
   add_modes_option(*relax, commands.relax.modes);
   relax
       ->add_option("--set", commands.relax.set,

@@ -38,7 +38,7 @@ FabricContact fabric_contact(const Fabric& fabric, const ModelOptions& options, 
   FabricContact contact;
   contact.full_core = own.material.contact.core;
   contact.model = build_yarn_model(fabric, own);
-  for (YarnModel::Yarn& yarn : contact.model.yarns) 
+  for (YarnModel::Yarn& yarn : contact.model.yarns)
     yarn.stretch_stiffness = yarn.bend_stiffness = yarn.twist_stiffness = 0;
   contact.width = fabric.width;
   contact.height = fabric.height;

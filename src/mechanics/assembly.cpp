@@ -124,11 +124,13 @@ void Assembly::accept(const YarnState& state) {
 
 EnergyParts Assembly::energy(const YarnState& state, std::vector<double>& of_segments) {
   of_segments.assign(static_cast<std::size_t>(model_.segments), 0);
-  return terms(state, nullptr, nullptr, &of_segments);
+  return with_friction(state, &of_segments);
 }
 
-EnergyParts Assembly::energy(const YarnState& state) {
-  EnergyParts parts = terms(state, nullptr, nullptr);
+EnergyParts Assembly::energy(const YarnState& state) { return with_friction(state, nullptr); }
+
+EnergyParts Assembly::with_friction(const YarnState& state, std::vector<double>* of_segments) {
+  EnergyParts parts = terms(state, nullptr, nullptr, of_segments);
   for (const FrictionContact& contact : friction_)
     parts.friction += contact.law.energy(relative_place(contact, state));
   return parts;

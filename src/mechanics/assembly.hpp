@@ -38,7 +38,7 @@ class Assembly {
 
   // Infinite where two samples are inside a core.
   EnergyParts energy(const YarnState& state);
-  // The same, and [segment] what of it is stretch, bend and contact, of a pair at its first segment.
+  // The same sums, and [segment] what of them is stretch, bend and contact, of a pair at its first segment.
   EnergyParts energy(const YarnState& state, std::vector<double>& of_segments);
   // Gradient (zero for what is held) and full Hessian; rows and columns of what is held are those of the
   // identity. Only for the state that update_pairs() was last given: the pattern holds the pairs that are in
@@ -79,6 +79,7 @@ class Assembly {
     Friction law;
   };
   struct Chunk;
+  EnergyParts with_friction(const YarnState& state, std::vector<double>* of_segments);
   EnergyParts terms(const YarnState& state, Unknowns* gradient, BlockMatrix* hessian,
                     std::vector<double>* of_segments = nullptr);
   FourNodes nodes_of(int segment) const;

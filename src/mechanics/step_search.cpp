@@ -23,10 +23,8 @@ bool StepSearch::lowers(const StepPlace& at, const TakenStep& taken, double scal
 }
 
 bool StepSearch::raise_where_energy_rises(const StepPlace& at, const TakenStep& taken, double shift) {
-  std::vector<double> before, after;
-  assembly_.energy(at.state, before);
-  assembly_.energy(assembly_.moved(at.state, step_, taken.safe.scale), after);
-  return local_.raise(before, after, -taken.safe.scale * taken.slope, shift);
+  if (of_segments_here_.empty()) assembly_.energy(at.state, of_segments_here_);
+  return local_.raise(of_segments_here_, of_segments_there_, -taken.safe.scale * taken.slope, shift);
 }
 
 bool StepSearch::solve(const StepPlace& at, BlockMatrix& hessian, double& shift, TakenStep& taken) {
@@ -54,9 +52,13 @@ bool StepSearch::solve(const StepPlace& at, BlockMatrix& hessian, double& shift,
     if (taken.safe.scale < enough_scale) {
       local_.raise(taken.safe, shift, gap_share);
     } else {
-      const double energy = assembly_.energy(assembly_.moved(at.state, step_, taken.safe.scale)).total();
-      if (lowers(at, taken, taken.safe.scale, energy) || !raise_where_energy_rises(at, taken, shift))
+      taken.state = assembly_.moved(at.state, step_, taken.safe.scale);
+      taken.energy = assembly_.energy(taken.state, of_segments_there_).total();
+      if (lowers(at, taken, taken.safe.scale, taken.energy)) {
+        taken.scale = taken.safe.scale;
         return true;
+      }
+      if (!raise_where_energy_rises(at, taken, shift)) return true;
     }
     weigh(shift);
   }
@@ -64,16 +66,15 @@ bool StepSearch::solve(const StepPlace& at, BlockMatrix& hessian, double& shift,
 
 bool StepSearch::take(const StepPlace& at, BlockMatrix& hessian, double& shift, TakenStep& taken) {
   taken = {};
+  of_segments_here_.clear();
   if (!solve(at, hessian, shift, taken)) return false;
   if (is_large()) hessian = BlockMatrix{};  // much of what is held, and not needed until the next step
   local_.fade();
   double scale = taken.safe.scale;
-  for (int cuts = 0; cuts < most_cuts; ++cuts, scale *= 0.5) {
+  for (int cuts = 0; taken.scale == 0 && cuts < most_cuts; ++cuts, scale *= 0.5) {
     taken.state = assembly_.moved(at.state, step_, scale);
     taken.energy = assembly_.energy(taken.state).total();
-    if (!lowers(at, taken, scale, taken.energy)) continue;
-    taken.scale = scale;
-    break;
+    if (lowers(at, taken, scale, taken.energy)) taken.scale = scale;
   }
   return true;
 }

@@ -37,6 +37,7 @@ class StepSearch {
 
  private:
   bool shifts_locally() const { return is_large() && !model_.periodic; }
+  // What it finds to lower the energy is taken whole.
   bool solve(const StepPlace& at, BlockMatrix& hessian, double& shift, TakenStep& taken);
   bool lowers(const StepPlace& at, const TakenStep& taken, double scale, double energy) const;
   bool raise_where_energy_rises(const StepPlace& at, const TakenStep& taken, double shift);
@@ -46,6 +47,7 @@ class StepSearch {
   StepSolver solver_;
   LocalShift local_;
   Unknowns step_;
+  std::vector<double> of_segments_here_, of_segments_there_;  // energies, of the state and of the step's end
 };
 
 }  // namespace loopwright

@@ -28,11 +28,11 @@ struct FlatPlates {
 struct YarnMaterial {
   double stretch_stiffness = 3000;  // EA d^2 / B
   double bend_stiffness = 1;        // B of this yarn over B of the reference yarn
-  double twist_stiffness = 0;       // C / B; 0: turns about itself without resistance
   ContactLaw contact;               // outer diameter 1 for the reference yarn
   double friction = 0;              // coefficient of yarn on yarn; 0: frictionless
   // B of the reference yarn in N m^2, by which the model's forces become newtons; 0: not known.
   double reference_bend_N_m2 = 0;
+  double twist_stiffness = 0;  // C / B; 0: turns about itself without resistance
 };
 
 struct YarnModel {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "notation/embedded_materials.hpp"
 #include "notation/scan.hpp"
@@ -26,6 +27,8 @@ constexpr std::array yarn_keys{
     YarnKey{"shell-exponent", &YarnData::shell_exponent, Dimension::share},
     YarnKey{"friction", &YarnData::friction_coefficient, Dimension::share},
 };
+
+constexpr double most_turns_per_m = 1e5;
 
 std::string known_keys() {
   std::string names;
@@ -52,6 +55,8 @@ void set_yarn_value(std::string_view name, std::string_view value, SourceLocatio
     const Quantity quantity = parsed_quantity(value, key.dimension);
     if (!quantity.problem.empty()) {
       diagnostics.error(at, quantity.problem);
+    } else if (key.dimension == Dimension::twist && std::abs(quantity.value) > most_turns_per_m) {
+      diagnostics.error(at, std::string(name) + " can be 100000 tpm at most, not " + quoted(value));
     } else if (key.dimension != Dimension::twist &&
                (quantity.value < 0 || (quantity.value == 0 && name != "friction"))) {
       diagnostics.error(at, std::string(name) + " must be greater than zero, not " + quoted(value));

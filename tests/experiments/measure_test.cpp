@@ -42,6 +42,21 @@ Fabric straight_yarns(int yarns, double pitch, int loops, double loop) {
   return fabric;
 }
 
+// Heads that stand a wale to the right of those three courses below, through the cell's border as well.
+TEST(Measure, WalesLeanAsTheWayFromHeadToHeadDoes) {
+  Fabric fabric = straight_yarns(3, 4, 5, 6);
+  EXPECT_TRUE(std::isnan(measure(fabric).wale_lean_degrees));
+  for (std::size_t k = 0; k < fabric.loops.size(); ++k) fabric.loops[k].loop = LoopId(k);
+  fabric.skew = 6;
+  for (std::size_t y = 0; y < 3; ++y) {
+    for (Vec3& p : fabric.yarns[y].control_points) p.x += 2.0 * static_cast<double>(y);
+    for (std::size_t i = 0; i < 5; ++i)
+      fabric.interlacings.push_back(
+          {LoopId(5 * y + i), LoopId((5 * y + i + 5) % 15), 1, {0, y == 2 ? 1 : 0}});
+  }
+  EXPECT_NEAR(measure(fabric).wale_lean_degrees, std::atan2(6, 12) * 180 / std::numbers::pi, 1e-9);
+}
+
 TEST(Measure, StraightYarnsHaveTheirPitchLengthAndMass) {
   const Measurements m = measure(straight_yarns(3, 4, 5, 6));
   EXPECT_EQ(m.loops, 15);

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <random>
 
 #include "mechanics/energies/all.hpp"
@@ -317,6 +318,18 @@ TEST(AssemblyDerivatives, PeriodicCellWithImagesAndMeasures) {
   }
 }
 
+TEST(AssemblyDerivatives, LivelyYarnThatResistsTwist) {
+  ModelOptions options = swollen();
+  options.free = {true, true, true};
+  options.material.twist_stiffness = 20;  // so much that it counts beside the rest
+  for (const char* courses : {"g", "ge", "g\ne"}) {
+    SCOPED_TRACE(courses);
+    Fabric cell = relax(knitted(courses, "periodic", ""), frictionless()).fabric;
+    for (FabricYarn& yarn : cell.yarns) yarn.liveliness = 0.2;
+    check_line(line_through(disturbed(cell, 0.02), options, 3));
+  }
+}
+
 TEST(AssemblyDerivatives, EachMeasureByItself) {
   ModelOptions options = swollen();
   options.free = {true, true, true};
@@ -383,7 +396,13 @@ TEST(AssemblyDerivatives, FrictionCountedFromTheLastHessian) {
     assembly.update_pairs(line.state, pair_range);
     assembly.hessian(line.state, gradient, hessian);
     const YarnState next = assembly.moved(line.state, line.direction, 0.012);
-    EXPECT_GT(assembly.energy(next).friction, 1e-3) << "friction does no work in this case";
+    const EnergyParts there = assembly.energy(next);
+    EXPECT_GT(there.friction, 1e-3) << "friction does no work in this case";
+    // Asked for by segment, the sums are the same, friction's work among them.
+    std::vector<double> of_segments;
+    EXPECT_EQ(assembly.energy(next, of_segments).total(), there.total());
+    EXPECT_NEAR(std::accumulate(of_segments.begin(), of_segments.end(), 0.0),
+                there.stretch + there.bend + there.contact, 1e-9 * there.total());
     assembly.accept(next);
     assembly.update_pairs(next, pair_range);
     const EnergyParts parts = assembly.hessian(next, gradient, hessian);

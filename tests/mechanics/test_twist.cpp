@@ -209,5 +209,29 @@ TEST(Twist, WalesOfPlainLeanAndThoseOfRibAndGarterStand) {
   }
 }
 
+// Courses of Z and S yarn in turn, what mills do against the lean: none is left.
+TEST(Twist, CoursesOfOppositeTwistDoNotLean) {
+  Fabric first = knitted("g\ng", "periodic", "");
+  ASSERT_EQ(first.yarns.size(), 2u);
+  first.yarns[0].liveliness = 0.1, first.yarns[1].liveliness = -0.1;
+  RelaxOptions options = frictionless();
+  options.model.material.twist_stiffness = 0.3;
+  options.model.free.skew = true;
+  const RelaxResult rest = relax(first, options);
+  EXPECT_TRUE(rest.converged) << rest.message;
+  EXPECT_NEAR(rest.fabric.skew / rest.fabric.height, 0, 1e-3);
+}
+
+TEST(Twist, NonsenseIsRefused) {
+  Fabric fabric = helix(8, 10, 32, 0.5);
+  RelaxOptions options = rod(-1);
+  EXPECT_THROW(relax(fabric, options), std::invalid_argument);
+  options = rod(std::nan(""));
+  EXPECT_THROW(relax(fabric, options), std::invalid_argument);
+  options = rod(1);
+  fabric.yarns[0].liveliness = INFINITY;
+  EXPECT_THROW(relax(fabric, options), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace loopwright

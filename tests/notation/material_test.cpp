@@ -79,6 +79,21 @@ TEST(YarnHeader, CountsBecomeTex) {
   EXPECT_EQ(yarn_of("").material, "");
 }
 
+TEST(YarnHeader, LivelinessIsTurnsEitherWay) {
+  EXPECT_EQ(yarn_of("liveliness=150 tpm").liveliness_per_m, 150);
+  EXPECT_EQ(yarn_of("liveliness=-150 turns/m").liveliness_per_m, -150);
+  EXPECT_NEAR(yarn_of("liveliness=2.54 tpi").liveliness_per_m.value(), 100, 1e-12);
+  EXPECT_EQ(yarn_of("cotton liveliness=0 tpm").liveliness_per_m, 0);
+  EXPECT_EQ(yarn_of("twist-stiffness=3 mN mm^2").twist_stiffness_mN_mm2, 3);
+  for (const char* wrong : {"liveliness=150", "liveliness=150 mm", "liveliness=2e5 tpm",
+                            "twist-stiffness=0 mN mm^2", "twist-stiffness=-1 mN mm^2"}) {
+    Diagnostics diagnostics("yarn");
+    YarnData yarn;
+    read_yarn(wrong, {1, 1}, yarn, diagnostics);
+    EXPECT_FALSE(diagnostics.ok()) << wrong;
+  }
+}
+
 TEST(YarnHeader, FreeTextOfKnitoutIsLeftAlone) {
   YarnData yarn;
   yarn.colour = "#123456";

@@ -37,13 +37,14 @@ std::array<std::uint64_t, 3> bits(const Vec3& v) { return {bits(v.x), bits(v.y),
 // Structured bindings name every field: a field that is added to these types does not compile here until it
 // is saved and compared too.
 void expect_equal(const FabricYarn& a, const FabricYarn& b) {
-  const auto& [yarn, carrier, colour, diameter, tex, rest, set, periodic, shift, points, held] = a;
+  const auto& [yarn, carrier, colour, diameter, tex, rest, lively, set, periodic, shift, points, held] = a;
   EXPECT_EQ(yarn, b.yarn);
   EXPECT_EQ(carrier, b.carrier);
   EXPECT_EQ(colour, b.colour);
   EXPECT_EQ(bits(diameter), bits(b.diameter));
   EXPECT_EQ(bits(tex), bits(b.linear_density_tex));
   EXPECT_EQ(bits(rest), bits(b.segment_rest_length));
+  EXPECT_EQ(bits(lively), bits(b.liveliness));
   EXPECT_EQ(set, b.natural_curvature);
   EXPECT_EQ(periodic, b.periodic);
   EXPECT_EQ(shift, b.shift);
@@ -111,6 +112,7 @@ State rich_state() {
   }
   fabric.yarns[1].control_points[4] = {-0.0, std::numeric_limits<double>::denorm_min(),
                                        std::numeric_limits<double>::max()};
+  fabric.yarns[1].liveliness = -1.0 / 7;
   FabricYarn& set = fabric.yarns[1];
   for (int e = 0; e < set.segments(); ++e) set.natural_curvature.push_back({0.1 * e, 1.0 / 3, 0, 0.25});
   fabric.loops[3].kind = LoopKind::split;
@@ -225,6 +227,7 @@ class ForgedState : public StateTest {
     Fabric fabric = test::plain_piece(2, 2, 8);
     FabricYarn& set = fabric.yarns[0];
     set.natural_curvature.assign(static_cast<std::size_t>(set.segments()), {0.1, 0.2, 0.3, 0.4});
+    set.liveliness = 0.1;
     write_state(in_folder("a.h5"), {fabric, {}, {}, {{0, 5, 0, 0, {0.01, 0, 0}}}});
     const std::string part = content(in_folder("a.h5")).substr(512);
     std::ofstream(in_folder("part.h5"), std::ios::binary) << part;
@@ -283,6 +286,11 @@ TEST_F(ForgedState, WrongContentIsSaid) {
   EXPECT_THAT(
       forged([](hid_t f) { overwrite_first(f, "segments/natural_curvature", H5T_NATIVE_DOUBLE, -1.0); }),
       HasSubstr("natural curvature"));
+  EXPECT_THAT(forged([](hid_t f) {
+                overwrite_first(f, "yarns/liveliness", H5T_NATIVE_DOUBLE,
+                                std::numeric_limits<double>::infinity());
+              }),
+              HasSubstr("liveliness"));
   EXPECT_THAT(forged([](hid_t f) { overwrite_first(f, "history/segments", H5T_NATIVE_INT, 9999); }),
               HasSubstr("segment that does not exist"));
   EXPECT_THAT(forged([](hid_t f) { overwrite_first(f, "history/shift", H5T_NATIVE_INT, 300); }),

@@ -19,7 +19,7 @@ struct Start {
   RelaxOptions options;
 };
 
-Start start_of(const std::string& structure, int n, double set = 0) {
+Start start_of(const std::string& structure, int n, double set = 0, double liveliness_per_m = 0) {
   const std::filesystem::path file =
       std::filesystem::path(LOOPWRIGHT_SOURCE_DIR) / "examples/structures" / (structure + ".verm");
   Diagnostics diagnostics(file);
@@ -29,6 +29,7 @@ Start start_of(const std::string& structure, int n, double set = 0) {
   Knitting knitting = knit_with(file, size, diagnostics);
   EXPECT_TRUE(diagnostics.ok());
   knitting.program.settings.set = set;
+  for (YarnData& yarn : knitting.program.yarns) yarn.liveliness_per_m = liveliness_per_m;
   const PieceRequest request{.start_from_cell = true};
   Start start{first_geometry(knitting, request), {}};
   start.options = relax_options(start.fabric, knitting.program, request);
@@ -88,6 +89,16 @@ TEST_P(HeldPiece, OfSetYarnIsAtRestToo) {
     return assembly.energy(state).bend;
   };
   EXPECT_LT(bend(set), 0.4 * bend(straight));
+}
+
+// The twist of a yarn is the same all along it, so where it was cut tells everywhere: nothing in plain and
+// garter, whose loops are not twisted by their way, a little elsewhere.
+TEST_P(HeldPiece, OfLivelyYarnIsAtRestButForItsEnds) {
+  const Start start = start_of(GetParam(), 8, 0, 40);
+  EXPECT_GT(start.options.model.material.twist_stiffness, 0);
+  const std::string structure = GetParam();
+  const bool untwisted = structure == "plain" || structure == "garter";
+  EXPECT_LT(largest_force(start, true), untwisted ? 2 * start.options.tolerance : 0.02);
 }
 
 TEST_P(HeldPiece, RestsInFewStepsWithAllInterlacings) {

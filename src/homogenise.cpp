@@ -37,8 +37,7 @@ Pull pulled(const RelaxResult& rest, const RelaxOptions& options, StretchDirecti
 
 // Cells with yarns that do not close along their courses have none.
 std::optional<CurlMoment> moment_in_newtons(const Fabric& cell, const RelaxOptions& options) {
-  const double unit =
-      options.model.material.reference_bend_N_m2 / std::pow(cell.diameter_mm * 1e-3, 2);  // B/d^2 in N
+  const double unit = force_unit_N(options.model.material, cell.diameter_mm);
   try {
     const CurlMoment moment = curl_moment(cell, options.model);
     return CurlMoment{unit * moment.course, unit * moment.wale};

@@ -137,6 +137,10 @@ std::string summary(const Assessment& assessment) {
   line << m.loops << " loops, " << m.width_mm << " x " << m.height_mm << " mm, " << m.wales_per_cm
        << " wales and " << m.courses_per_cm << " courses per cm, loop length " << m.loop_length_mm
        << " mm, Kc " << m.Kc << ", Kw " << m.Kw;
+  constexpr double told_from = 0.5;  // degrees
+  if (std::abs(m.wale_lean_degrees) >= told_from)
+    line << ", wales lean by " << std::abs(m.wale_lean_degrees) << " degrees to the "
+         << (m.wale_lean_degrees > 0 ? "right" : "left");
   if (m.areal_density_g_m2) line << ", " << *m.areal_density_g_m2 << " g/m^2";
   line << ", " << assessment.interlacings.intact << " of " << assessment.interlacings.expected
        << " interlacings intact";

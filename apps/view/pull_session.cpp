@@ -52,8 +52,7 @@ bool PullSession::pull(const Vec3& force) {
 }
 
 double PullSession::force_unit_N() const {
-  const double d = at_.fabric.diameter_mm * 1e-3;
-  return options_.model.material.reference_bend_N_m2 / (d * d);
+  return loopwright::force_unit_N(options_.model.material, at_.fabric.diameter_mm);
 }
 
 }  // namespace loopwright

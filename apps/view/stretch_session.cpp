@@ -36,7 +36,8 @@ StretchSession::StretchSession(const RelaxResult& rest, RelaxOptions options, St
 
 StretchPoint StretchSession::point() const {
   const double d = rest_.diameter_mm * 1e-3, bend = options_.model.material.reference_bend_N_m2;
-  const double force_unit = bend / (d * d), width = rest_.width * d, height = rest_.height * d;
+  const double force_unit = force_unit_N(options_.model.material, rest_.diameter_mm), width = rest_.width * d,
+               height = rest_.height * d;
   StretchPoint p;
   p.course_strain = at_.fabric.width / rest_.width - 1;
   p.wale_strain = at_.fabric.height / rest_.height - 1;

@@ -50,6 +50,10 @@ QString facts_of_material(const ClothMoment& moment) {
     rows += row(QObject::tr("Stretching"),
                 QObject::tr("%1 B/d\u00b2").arg(material.stretch_stiffness, 0, 'g', 4));
   }
+  if (material.twist_stiffness > 0)
+    rows += row(QObject::tr("Twisting"),
+                bend > 0 ? QObject::tr("%1 mN mm\u00b2").arg(material.twist_stiffness * bend * 1e9, 0, 'g', 4)
+                         : QObject::tr("%1 B").arg(material.twist_stiffness, 0, 'g', 4));
   rows += row(QObject::tr("Friction"), QString::number(material.friction, 'g', 3));
   return QStringLiteral("<table>%1</table><p>%2</p>").arg(rows, QObject::tr("As the file of cloth says it."));
 }

@@ -58,7 +58,7 @@ KnittedRest relax_as_knitted(const Fabric& first, const RelaxOptions& options,
   knitting.model.free.width = false;
   knitting.model.free.height = true;
   if (history.take_down_N > 0)
-    knitting.model.load[1] = history.take_down_N * d * d * 1e-6 / options.model.material.reference_bend_N_m2;
+    knitting.model.load[1] = history.take_down_N / force_unit_N(options.model.material, d);
   if (history.flat_gap_mm > 0) knitting.model.plates = plates_apart(first, history.flat_gap_mm / d);
   KnittedRest rest;
   rest.on_machine = relax(at_width(first, history.machine_width_mm / d), knitting);
@@ -71,8 +71,8 @@ KnittedRest relax_as_knitted(const Fabric& first, const RelaxOptions& options,
   rest.relaxed = relax(rest.on_machine.fabric, released);
   add_counts(rest.relaxed, rest.on_machine);
   if (history.hand_pull_N_m > 0) {
-    const double force = options.model.material.reference_bend_N_m2 / (d * d * 1e-6);  // B/d^2 in N
-    const double tension = history.hand_pull_N_m * d * 1e-3 / force;                   // B/d^3
+    const double tension =
+        history.hand_pull_N_m * d * 1e-3 / force_unit_N(options.model.material, d);  // B/d^3
     const Measures pull{tension * rest.relaxed.fabric.height, tension * rest.relaxed.fabric.width, 0},
         own = options.model.load;  // which the cloth bears before and after
     for (const Measures& load : {sum(own, pull), own}) rest.relaxed = relax_on(rest.relaxed, released, load);

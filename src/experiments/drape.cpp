@@ -15,8 +15,7 @@ double force_unit(const Fabric& fabric, const YarnMaterial& material) {
   if (!(material.reference_bend_N_m2 > 0))
     throw std::invalid_argument(
         "weight needs the yarn's bend stiffness: name a material or give the yarn its data");
-  const double d = fabric.diameter_mm * 1e-3;
-  return material.reference_bend_N_m2 / (d * d);
+  return force_unit_N(material, fabric.diameter_mm);
 }
 
 // `repeats` of a cell above each other, still one cell.

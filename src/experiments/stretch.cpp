@@ -100,8 +100,8 @@ StretchResult stretch(const RelaxResult& relaxed, const RelaxOptions& options, c
   if (!(bend_stiffness > 0))
     throw std::invalid_argument(
         "forces need the yarn's bend stiffness: name a material or give the yarn its data");
-  const double d = start.diameter_mm * 1e-3;                        // m
-  const double force_unit = bend_stiffness / (d * d);               // B/d^2 in N
+  const double d = start.diameter_mm * 1e-3;  // m
+  const double force_unit = force_unit_N(options.model.material, start.diameter_mm);
   const double width = start.width * d, height = start.height * d;  // m
 
   RelaxOptions held = options;

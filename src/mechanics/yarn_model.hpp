@@ -35,6 +35,11 @@ struct YarnMaterial {
   double twist_stiffness = 0;  // C / B; 0: turns about itself without resistance
 };
 
+// The model's unit of force, B/d^2, in N; 0 if B is not known.
+inline double force_unit_N(const YarnMaterial& material, double diameter_mm) {
+  return material.reference_bend_N_m2 / (diameter_mm * diameter_mm * 1e-6);
+}
+
 struct YarnModel {
   struct Yarn {
     int first_node = 0, nodes = 0;  // control points

@@ -14,18 +14,19 @@ struct YarnKey {
   std::string_view name;
   std::optional<double> YarnData::*value;
   Dimension dimension;
+  std::string_view unit;  // as it is written behind a number
 };
 constexpr std::array yarn_keys{
-    YarnKey{"linear-density", &YarnData::linear_density_tex, Dimension::linear_density},
-    YarnKey{"diameter", &YarnData::diameter_mm, Dimension::length},
-    YarnKey{"core-diameter", &YarnData::core_diameter_mm, Dimension::length},
-    YarnKey{"bend-stiffness", &YarnData::bend_stiffness_mN_mm2, Dimension::bend_stiffness},
-    YarnKey{"stretch-stiffness", &YarnData::stretch_stiffness_cN, Dimension::force},
-    YarnKey{"twist-stiffness", &YarnData::twist_stiffness_mN_mm2, Dimension::bend_stiffness},
-    YarnKey{"liveliness", &YarnData::liveliness_per_m, Dimension::twist},
-    YarnKey{"shell-stiffness", &YarnData::shell_stiffness, Dimension::shell_stiffness},
-    YarnKey{"shell-exponent", &YarnData::shell_exponent, Dimension::share},
-    YarnKey{"friction", &YarnData::friction_coefficient, Dimension::share},
+    YarnKey{"linear-density", &YarnData::linear_density_tex, Dimension::linear_density, " tex"},
+    YarnKey{"diameter", &YarnData::diameter_mm, Dimension::length, " mm"},
+    YarnKey{"core-diameter", &YarnData::core_diameter_mm, Dimension::length, " mm"},
+    YarnKey{"bend-stiffness", &YarnData::bend_stiffness_mN_mm2, Dimension::bend_stiffness, " mN mm^2"},
+    YarnKey{"stretch-stiffness", &YarnData::stretch_stiffness_cN, Dimension::force, " cN"},
+    YarnKey{"twist-stiffness", &YarnData::twist_stiffness_mN_mm2, Dimension::bend_stiffness, " mN mm^2"},
+    YarnKey{"liveliness", &YarnData::liveliness_per_m, Dimension::twist, " tpm"},
+    YarnKey{"shell-stiffness", &YarnData::shell_stiffness, Dimension::shell_stiffness, " N/mm^3"},
+    YarnKey{"shell-exponent", &YarnData::shell_exponent, Dimension::share, ""},
+    YarnKey{"friction", &YarnData::friction_coefficient, Dimension::share, ""},
 };
 
 constexpr double most_turns_per_m = 1e5;
@@ -193,18 +194,15 @@ void read_yarn(std::string_view value, SourceLocation at, YarnData& yarn, Diagno
 }
 
 std::string yarn_value(const YarnData& yarn) {
-  constexpr std::array<std::string_view, yarn_keys.size()> units{" tex", " mm",     " mm", " mN mm^2",
-                                                                 " cN",  " N/mm^3", "",    ""};
   const Material* material = find_material(yarn.material);
   const YarnData base = material ? material->yarn : YarnData{};
   std::string value = base.material;
   const auto add = [&](std::string_view key, const std::string& written) {
     value += (value.empty() ? "" : " ") + std::string(key) + '=' + written;
   };
-  for (std::size_t i = 0; i < yarn_keys.size(); ++i) {
-    const std::optional<double>& number = yarn.*yarn_keys[i].value;
-    if (number && number != base.*yarn_keys[i].value)
-      add(yarn_keys[i].name, written_number(*number) + std::string(units[i]));
+  for (const YarnKey& key : yarn_keys) {
+    const std::optional<double>& number = yarn.*key.value;
+    if (number && number != base.*key.value) add(key.name, written_number(*number) + std::string(key.unit));
   }
   if (yarn.colour != base.colour) add("colour", yarn.colour);
   return value;

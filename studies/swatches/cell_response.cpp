@@ -52,7 +52,7 @@ std::vector<LoadedCell> cell_response(const std::filesystem::path& file, SwatchP
       relax_first(first, graph, knitting.program, not_pulled, wales, SwatchWork{}.most_iterations).relaxed;
 
   const RelaxOptions usual = swatch_options(first, knitting.program, SwatchWork{}.most_iterations);
-  const double d = first.diameter_mm * 1e-3, force = usual.model.material.reference_bend_N_m2 / (d * d);
+  const double d = first.diameter_mm * 1e-3, force = force_unit_N(usual.model.material, first.diameter_mm);
   std::vector<LoadedCell> all;
   using Loads = std::array<double, 3>;
   const auto under = [&](const RelaxResult& from, const Loads& load) {

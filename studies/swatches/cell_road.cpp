@@ -14,13 +14,10 @@
 #include "topology/build_yarn_graph.hpp"
 
 namespace loopwright {
-namespace {
 
 double now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
-
-}  // namespace
 
 Knitting knit_swatch(const std::filesystem::path& file, const MachineModel& machine) {
   Diagnostics diagnostics(file.string());
@@ -149,12 +146,10 @@ SwatchPrediction predict_by_cell(const std::filesystem::path& file, const Swatch
   if (work.stretched) {
     // One load at a time, borne by all courses or all wales of the whole swatch alike.
     constexpr int all_wales = 84, all_courses = 90;
-    const double force_unit = options.model.material.reference_bend_N_m2 /
-                              (first.diameter_mm * first.diameter_mm * 1e-6);  // B/d^2 in N
     RelaxOptions loaded = options;
     loaded.grow_in = false;
     loaded.model.plates = relaxed.plates;
-    const double load = machine.stretch_load_N / force_unit;
+    const double load = machine.stretch_load_N / force_unit_N(options.model.material, first.diameter_mm);
     const RelaxResult wide = relax_on(relaxed, loaded, {load / all_courses * p.cell_courses, 0, 0});
     const RelaxResult high = relax_on(relaxed, loaded, {0, load / all_wales * p.cell_wales, 0});
     p.stretched_width_mm = inner(wide.fabric.width, p.cell_wales, measured_wales);

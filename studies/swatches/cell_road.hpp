@@ -33,6 +33,8 @@ struct SwatchWork {
 };
 
 // The swatch as the machine knits it. Throws std::invalid_argument if the programme has errors.
+double now_s();  // of a clock that does not jump
+
 Knitting knit_swatch(const std::filesystem::path& file, const MachineModel& machine);
 // The loops that are measured: 60 wales by 60 courses in the middle, the border's courses at either end.
 LoopSelection measured_loops(const YarnGraph& graph);

@@ -1,7 +1,6 @@
 #include "whole_road.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <map>
 
@@ -11,10 +10,6 @@
 
 namespace loopwright {
 namespace {
-
-double now_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 Vec3 head_of(const Fabric& fabric, const LoopSpan& span) {
   return position(fabric, fabric.yarns[static_cast<std::size_t>(span.yarn)], span.apex);
@@ -163,7 +158,7 @@ std::vector<WholeSize> relax_whole(const std::filesystem::path& file, const Whol
   usual.model.free = {false, false, false};
   // The moss border shows both faces, whatever the pattern.
   usual.model.plates = plates_apart(first, machine.two_layers_mm / d);
-  const double force = usual.model.material.reference_bend_N_m2 / (d * d * 1e-6);  // B/d^2 in N
+  const double force = force_unit_N(usual.model.material, d);
 
   std::vector<WholeSize> sizes;
   RelaxResult at;

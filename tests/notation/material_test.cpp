@@ -94,6 +94,28 @@ TEST(YarnHeader, LivelinessIsTurnsEitherWay) {
   }
 }
 
+// Every key as it is written reads back as the same number.
+TEST(YarnHeader, IsWrittenAsItIsRead) {
+  const YarnData yarn = yarn_of(
+      "cotton linear-density=21 tex diameter=0.17 mm core-diameter=0.12 mm bend-stiffness=2.5 mN mm^2 "
+      "stretch-stiffness=5000 cN twist-stiffness=0.75 mN mm^2 liveliness=-120 tpm shell-stiffness=0.02 "
+      "N/mm^3 "
+      "shell-exponent=2.5 friction=0.19 colour=#102030");
+  const YarnData back = yarn_of(yarn_value(yarn));
+  EXPECT_EQ(back.material, yarn.material);
+  EXPECT_EQ(back.linear_density_tex, 21);
+  EXPECT_EQ(back.diameter_mm, 0.17);
+  EXPECT_EQ(back.core_diameter_mm, 0.12);
+  EXPECT_EQ(back.bend_stiffness_mN_mm2, 2.5);
+  EXPECT_EQ(back.stretch_stiffness_cN, 5000);
+  EXPECT_EQ(back.twist_stiffness_mN_mm2, 0.75);
+  EXPECT_EQ(back.liveliness_per_m, -120);
+  EXPECT_EQ(back.shell_stiffness, 0.02);
+  EXPECT_EQ(back.shell_exponent, 2.5);
+  EXPECT_EQ(back.friction_coefficient, 0.19);
+  EXPECT_EQ(back.colour, "#102030");
+}
+
 TEST(YarnHeader, FreeTextOfKnitoutIsLeftAlone) {
   YarnData yarn;
   yarn.colour = "#123456";

@@ -55,10 +55,9 @@ std::optional<ToldForces> told_forces(const State& state) {
   ModelOptions options;
   options.material = *material;
   told.forces = yarn_forces(state.fabric, options);
-  if (material->reference_bend_N_m2 > 0) {
-    const double d_m = state.fabric.diameter_mm * 1e-3;
-    told.tension_scale = material->reference_bend_N_m2 / (d_m * d_m) * 100;  // cN
-    told.contact_scale = told.tension_scale / state.fabric.diameter_mm;      // cN/mm
+  if (const double unit_N = force_unit_N(*material, state.fabric.diameter_mm); unit_N > 0) {
+    told.tension_scale = 100 * unit_N;                                   // cN
+    told.contact_scale = told.tension_scale / state.fabric.diameter_mm;  // cN/mm
     told.tension_name = "tension_cN", told.contact_name = "contact_cN_per_mm";
   }
   return told;

@@ -25,10 +25,9 @@ class YarnTwist {
 
   // Of the state last measured.
   double energy() const;
-  double angle(std::size_t yarn) const { return angle_[yarn]; }  // psi L + Theta
-  double couple(std::size_t yarn) const;                         // C (psi L + Theta) / L
-  // couple^2 has a second derivative of its own, C / L times the dyad of dTheta: [yarns that resist twist].
-  // Held control points have none.
+  double couple(std::size_t yarn) const;  // C (psi L + Theta) / L
+  // [yarns that resist twist] what of the energy's second derivative couples all of a yarn: C / L times the
+  // dyad of dTheta. The rest is couple() times the second derivative of Theta, segment by segment.
   std::vector<Dyad> dyads(const std::vector<Vec3>& extended,
                           const std::vector<std::array<double, 2>>& fractions) const;
 
@@ -40,7 +39,7 @@ class YarnTwist {
 
   const YarnModel& model_;
   bool counts_ = false;
-  std::vector<double> angle_, settled_angle_;  // [yarn]
+  std::vector<double> angle_, settled_angle_;  // [yarn] psi L + Theta
   std::vector<ArcEnds> tangents_, settled_;    // [segment] of yarns that resist twist
   std::vector<double> swept_;                  // [segment]
 };

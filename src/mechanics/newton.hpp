@@ -19,6 +19,7 @@ struct NewtonResult {
   EnergyParts energy;
   double residual = 0, measure_residual = 0;
   int iterations = 0, linear_iterations = 0, factorisations = 0, crossings = 0;
+  int spots = 0, spot_iterations = 0;  // places settled by themselves, their steps (hot_spots.hpp)
   bool converged = false, stopped = false;
   double shift = 0;           // the last shift, to start the next call from
   Measures measure_forces{};  // dE/d(width, height, skew), B/d^2, free or not

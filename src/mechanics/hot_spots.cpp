@@ -41,75 +41,110 @@ std::vector<std::int32_t> hot_nodes(const YarnModel& model, const Unknowns& grad
   return hot;
 }
 
-// Brings the spot round a hot control point to rest; marks what moved.
-bool settle(const YarnModel& whole, std::int32_t hottest, const std::vector<std::uint8_t>& is_hot,
-            double tolerance, YarnState& state, ContactHistory& history, std::vector<std::uint8_t>& done,
-            SpotsReport& report) {
-  const SegmentGrid grid(whole, state);
-  // What moves: the hot control points that hang together, and what lies within `with_it` of their yarn.
-  std::vector<std::uint8_t> moves(state.nodes.size(), 0), listed(static_cast<std::size_t>(whole.segments), 0);
-  const auto segments_of = [&](std::int32_t node, const auto& visit) {
+// All that the spots of one call share.
+class SpotSettler {
+ public:
+  SpotSettler(const YarnModel& whole, const std::vector<std::int32_t>& hot, double tolerance,
+              YarnState& state, const ContactHistory& history)
+      : whole_(whole), tolerance_(tolerance), state_(state), grid_(whole, state), history_(history) {
+    is_hot_.assign(state.nodes.size(), 0);
+    for (const std::int32_t i : hot) is_hot_[static_cast<std::size_t>(i)] = 1;
+    done_.assign(state.nodes.size(), 0);
+  }
+  bool is_done(std::int32_t node) const { return done_[static_cast<std::size_t>(node)] != 0; }
+  bool settle(std::int32_t hottest, SpotsReport& report);
+  ContactHistory history() const { return history_.whole(); }
+
+ private:
+  template <class Visit>
+  void segments_of(std::int32_t node, const Visit& visit) const {
     const auto yarn =
-        std::upper_bound(whole.yarns.begin(), whole.yarns.end(), node,
+        std::upper_bound(whole_.yarns.begin(), whole_.yarns.end(), node,
                          [](std::int32_t i, const YarnModel::Yarn& y) { return i < y.first_node; }) -
         1;
     const std::int32_t on_yarn = node - yarn->first_node;
     for (std::int32_t e = std::max(0, on_yarn - 3); e <= std::min(on_yarn, yarn->segments - 1); ++e)
       visit(yarn->first_segment + e);
-  };
-  const auto nodes_of = [&](std::int32_t segment, const auto& visit) {
-    const auto f = static_cast<std::size_t>(whole.first[static_cast<std::size_t>(segment)]);
-    for (std::size_t k = 0; k < 4; ++k) visit(whole.base[f + k]);
-  };
-  std::vector<std::int32_t> to_visit{hottest};
-  std::size_t moving = 0;
-  while (!to_visit.empty()) {
+  }
+  std::vector<std::int32_t> moving_with(std::int32_t hottest, std::vector<std::uint8_t>& moves);
+  std::vector<std::int32_t> segments_round(const std::vector<std::int32_t>& moving) const;
+
+  const YarnModel& whole_;
+  double tolerance_;
+  YarnState& state_;
+  SegmentGrid grid_;  // of the places before the first spot
+  double gone_ = 0;   // d that any control point has moved since, at most
+  ChangedHistory history_;
+  std::vector<std::uint8_t> is_hot_, done_;
+};
+
+// The hot control points that hang together with this one, and what lies within `with_it` of their yarn.
+std::vector<std::int32_t> SpotSettler::moving_with(std::int32_t hottest, std::vector<std::uint8_t>& moves) {
+  std::vector<std::int32_t> moving, to_visit{hottest};
+  while (!to_visit.empty() && moving.size() <= most_nodes) {
     const std::int32_t node = to_visit.back();
     to_visit.pop_back();
-    if (done[static_cast<std::size_t>(node)] != 0) continue;
-    done[static_cast<std::size_t>(node)] = 1;
+    if (is_done(node)) continue;
+    done_[static_cast<std::size_t>(node)] = 1;
     segments_of(node, [&](std::int32_t own) {
-      grid.each_near(own, with_it, [&](std::int32_t near) {
-        nodes_of(near, [&](std::int32_t i) {
+      grid_.each_near(own, with_it, [&](std::int32_t near) {
+        const auto f = static_cast<std::size_t>(whole_.first[static_cast<std::size_t>(near)]);
+        for (std::size_t k = f; k < f + 4; ++k) {
+          const std::int32_t i = whole_.base[k];
           const auto at = static_cast<std::size_t>(i);
-          if (moves[at] == 0) moves[at] = 1, ++moving;
-          if (is_hot[at] != 0 && done[at] == 0) to_visit.push_back(i);
-        });
+          if (moves[at] == 0) moves[at] = 1, moving.push_back(i);
+          if (is_hot_[at] != 0 && !is_done(i)) to_visit.push_back(i);
+        }
       });
     });
-    if (moving > most_nodes) return false;
   }
-  const double range = whole.contact.outer + known;
+  return moving;
+}
+
+// All that these could meet on a way of less than `known`.
+std::vector<std::int32_t> SpotSettler::segments_round(const std::vector<std::int32_t>& moving) const {
+  enum : std::uint8_t { unseen, found, visited };
+  std::vector<std::uint8_t> mark(static_cast<std::size_t>(whole_.segments), unseen);
   std::vector<std::int32_t> segments;
-  for (std::int32_t i = 0; i < whole.nodes; ++i) {
-    if (moves[static_cast<std::size_t>(i)] == 0) continue;
+  for (const std::int32_t i : moving)
     segments_of(i, [&](std::int32_t own) {
-      if (listed[static_cast<std::size_t>(own)] == 2) return;
-      grid.each_near(own, range, [&](std::int32_t near) {
-        auto& mark = listed[static_cast<std::size_t>(near)];
-        if (mark == 0) mark = 1, segments.push_back(near);
+      if (mark[static_cast<std::size_t>(own)] == visited) return;
+      grid_.each_near(own, whole_.contact.outer + known + 2 * gone_, [&](std::int32_t near) {
+        if (auto& its = mark[static_cast<std::size_t>(near)]; its == unseen)
+          its = found, segments.push_back(near);
       });
-      listed[static_cast<std::size_t>(own)] = 2;
+      mark[static_cast<std::size_t>(own)] = visited;
     });
-  }
-  Spot spot = cut_out(whole, state, moves, std::move(segments));
+  return segments;
+}
+
+// Brings the spot round a hot control point to rest, if its steps are sure.
+bool SpotSettler::settle(std::int32_t hottest, SpotsReport& report) {
+  std::vector<std::uint8_t> moves(state_.nodes.size(), 0);
+  const std::vector<std::int32_t> moving = moving_with(hottest, moves);
+  if (moving.size() > most_nodes) return false;
+  Spot spot = cut_out(whole_, state_, moves, segments_round(moving));
   if (spot.node_of.size() > most_nodes) return false;
-  ContactHistory own = history_in(spot, history);
+  ContactHistory own = history_.inside(spot);
   const YarnState before = spot.state;
-  const auto went_too_far = [&] {
+  const auto way = [&] {
+    double most = 0;
     for (std::size_t i = 0; i < before.nodes.size(); ++i)
-      if (distance(before.nodes[i], spot.state.nodes[i]) > 0.9 * known) return true;
-    return false;
+      most = std::max(most, distance(before.nodes[i], spot.state.nodes[i]));
+    return most;
   };
   NewtonOptions options;
-  options.tolerance = tolerance;
+  options.tolerance = tolerance_;
   options.most_iterations = most_iterations;
   bool near = true;  // at no time so far away that yarn which is not known here could be met
-  options.on_iteration = [&](int, double) { return near = near && !went_too_far(); };
+  options.on_iteration = [&](int, double) { return near = near && way() < 0.9 * known; };
   const NewtonResult rest = newton(spot.model, spot.state, options, 1e-3, &own);
   report.iterations += rest.iterations;
   if (!near || rest.crossings > 0) return false;
-  put_back(spot, own, state, history);
+  gone_ += way();
+  for (std::size_t i = 0; i < spot.node_of.size(); ++i)
+    state_.nodes[static_cast<std::size_t>(spot.node_of[i])] = spot.state.nodes[i];
+  history_.put_back(spot, own);
   return true;
 }
 
@@ -126,13 +161,10 @@ SpotsReport settle_hot_spots(const YarnModel& model, const Unknowns& gradient, d
   double usual = 0;
   const std::vector<std::int32_t> hot = hot_nodes(model, gradient, tolerance, usual);
   if (hot.empty()) return report;
-  std::vector<std::uint8_t> is_hot(gradient.u.size(), 0), done(gradient.u.size(), 0);
-  for (const std::int32_t i : hot) is_hot[static_cast<std::size_t>(i)] = 1;
-  const double enough = std::max(usual, tolerance);
+  SpotSettler settler(model, hot, std::max(usual, tolerance), state, history);
   for (const std::int32_t i : hot)
-    if (done[static_cast<std::size_t>(i)] == 0 &&
-        settle(model, i, is_hot, enough, state, history, done, report))
-      ++report.spots;
+    if (!settler.is_done(i) && settler.settle(i, report)) ++report.spots;
+  history = settler.history();
   return report;
 }
 

@@ -81,33 +81,61 @@ Spot cut_out(const YarnModel& whole, const YarnState& state, const std::vector<s
   return spot;
 }
 
-ContactHistory history_in(const Spot& spot, const ContactHistory& history) {
+std::span<const ContactSlip> ChangedHistory::of(std::int32_t segment) const {
+  if (const auto found = changed_.find(segment); found != changed_.end()) return found->second;
+  const auto low = std::lower_bound(before_.begin(), before_.end(), segment,
+                                    [](const ContactSlip& c, std::int32_t a) { return c.a < a; });
+  const auto high = std::upper_bound(low, before_.end(), segment,
+                                     [](std::int32_t a, const ContactSlip& c) { return a < c.a; });
+  return {low, high};
+}
+
+ContactHistory ChangedHistory::inside(const Spot& spot) const {
   ContactHistory own;
-  for (ContactSlip contact : history) {
-    contact.a = spot.segment_in[static_cast<std::size_t>(contact.a)];
-    contact.b = spot.segment_in[static_cast<std::size_t>(contact.b)];
-    if (contact.a >= 0 && contact.b >= 0) own.push_back(contact);
-  }
+  for (const std::int32_t segment : spot.segment_of)
+    for (ContactSlip contact : of(segment)) {
+      contact.a = spot.segment_in[static_cast<std::size_t>(contact.a)];
+      contact.b = spot.segment_in[static_cast<std::size_t>(contact.b)];
+      if (contact.b >= 0) own.push_back(contact);
+    }
   return own;
 }
 
-void put_back(const Spot& spot, const ContactHistory& own, YarnState& state, ContactHistory& history) {
-  for (std::size_t i = 0; i < spot.node_of.size(); ++i)
-    state.nodes[static_cast<std::size_t>(spot.node_of[i])] = spot.state.nodes[i];
-  std::erase_if(history, [&](const ContactSlip& contact) {
-    const std::int32_t a = spot.segment_in[static_cast<std::size_t>(contact.a)],
-                       b = spot.segment_in[static_cast<std::size_t>(contact.b)];
-    return a >= 0 && b >= 0 && (may_move(spot, a) || may_move(spot, b));
-  });
+void ChangedHistory::put_back(const Spot& spot, const ContactHistory& own) {
+  std::map<std::int32_t, ContactHistory> now;
+  for (const std::int32_t segment : spot.segment_of) {
+    const bool moves = may_move(spot, spot.segment_in[static_cast<std::size_t>(segment)]);
+    ContactHistory& kept = now[segment];
+    for (const ContactSlip& contact : of(segment)) {
+      const std::int32_t b = spot.segment_in[static_cast<std::size_t>(contact.b)];
+      if (b < 0 || !(moves || may_move(spot, b))) kept.push_back(contact);
+    }
+  }
   for (ContactSlip contact : own) {
     if (!may_move(spot, contact.a) && !may_move(spot, contact.b)) continue;
     contact.a = spot.segment_of[static_cast<std::size_t>(contact.a)];
     contact.b = spot.segment_of[static_cast<std::size_t>(contact.b)];
-    history.push_back(contact);
+    now[contact.a].push_back(contact);
   }
-  const auto key = [](const ContactSlip& c) { return std::tie(c.a, c.b, c.m, c.n); };
-  std::sort(history.begin(), history.end(),
-            [&](const ContactSlip& a, const ContactSlip& b) { return key(a) < key(b); });
+  const auto rank = [](const ContactSlip& c) { return std::tie(c.b, c.m, c.n); };
+  for (auto& [segment, contacts] : now) {
+    std::sort(contacts.begin(), contacts.end(),
+              [&](const ContactSlip& a, const ContactSlip& b) { return rank(a) < rank(b); });
+    changed_[segment] = std::move(contacts);
+  }
+}
+
+ContactHistory ChangedHistory::whole() const {
+  ContactHistory all;
+  all.reserve(before_.size());
+  auto next = before_.begin();
+  for (const auto& [segment, contacts] : changed_) {
+    for (; next != before_.end() && next->a < segment; ++next) all.push_back(*next);
+    while (next != before_.end() && next->a == segment) ++next;
+    all.insert(all.end(), contacts.begin(), contacts.end());
+  }
+  all.insert(all.end(), next, before_.end());
+  return all;
 }
 
 }  // namespace loopwright

@@ -1,5 +1,8 @@
 // A spot of a piece (hot_spots.hpp) as a model of its own, cut out of the piece's and put back.
 #pragma once
+#include <map>
+#include <span>
+
 #include "mechanics/contact_history.hpp"
 #include "mechanics/yarn_model.hpp"
 
@@ -17,10 +20,23 @@ struct Spot {
 // held.
 Spot cut_out(const YarnModel& whole, const YarnState& state, const std::vector<std::uint8_t>& moves,
              std::vector<std::int32_t> segments);
-// What friction knows of the contacts inside the spot, by its own segments.
-ContactHistory history_in(const Spot& spot, const ContactHistory& history);
-// Places and contacts of the spot as they are now; contacts of which neither side could move stay as they
-// were.
-void put_back(const Spot& spot, const ContactHistory& own, YarnState& state, ContactHistory& history);
+
+// Friction's history while spots change some of it: what a spot has changed is kept beside the rest, which
+// may be long, until all are done.
+class ChangedHistory {
+ public:
+  explicit ChangedHistory(const ContactHistory& before) : before_(before) {}
+  // What friction knows of the contacts inside the spot, by its own segments.
+  ContactHistory inside(const Spot& spot) const;
+  // Contacts of which at least one side may have moved, as they are now.
+  void put_back(const Spot& spot, const ContactHistory& own);
+  ContactHistory whole() const;
+
+ private:
+  std::span<const ContactSlip> of(std::int32_t segment) const;  // those whose first segment this is
+
+  const ContactHistory& before_;
+  std::map<std::int32_t, ContactHistory> changed_;  // by first segment: all of its contacts
+};
 
 }  // namespace loopwright

@@ -151,7 +151,7 @@ bool SpotSettler::settle(std::int32_t hottest, SpotsReport& report) {
 }  // namespace
 
 SpotsReport settle_hot_spots(const YarnModel& model, const Unknowns& gradient, double tolerance,
-                             YarnState& state, ContactHistory& history) {
+                             YarnState& state, const ContactHistory& history) {
   SpotsReport report;
   const bool twisted = std::any_of(model.yarns.begin(), model.yarns.end(),
                                    [](const YarnModel::Yarn& yarn) { return yarn.twist_stiffness > 0; });
@@ -164,7 +164,7 @@ SpotsReport settle_hot_spots(const YarnModel& model, const Unknowns& gradient, d
   SpotSettler settler(model, hot, std::max(usual, tolerance), state, history);
   for (const std::int32_t i : hot)
     if (!settler.is_done(i) && settler.settle(i, report)) ++report.spots;
-  history = settler.history();
+  if (report.spots > 0) report.history = settler.history();
   return report;
 }
 

@@ -9,8 +9,9 @@
 namespace loopwright {
 
 struct SpotsReport {
-  int spots = 0;       // brought nearer to rest
-  int iterations = 0;  // Newton steps of theirs
+  int spots = 0;           // brought nearer to rest
+  int iterations = 0;      // Newton steps of theirs
+  ContactHistory history;  // friction's, of the piece, after them; of no spot: not filled
 };
 
 // `gradient` belongs to `state`; friction's history goes along. Steps are certified as those of the piece
@@ -18,6 +19,6 @@ struct SpotsReport {
 // where forces are spread over the piece, in periodic cells and where yarn resists twist, which spots cannot
 // tell.
 SpotsReport settle_hot_spots(const YarnModel& model, const Unknowns& gradient, double tolerance,
-                             YarnState& state, ContactHistory& history);
+                             YarnState& state, const ContactHistory& history);
 
 }  // namespace loopwright

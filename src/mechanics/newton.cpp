@@ -59,11 +59,10 @@ NewtonResult newton(const YarnModel& model, YarnState& state, const NewtonOption
     };
     evaluate();
     if (search.is_large() && !result.converged && result.iterations < options.most_iterations) {
-      ContactHistory contacts = assembly.history();
-      const SpotsReport settled = settle_hot_spots(model, gradient, options.tolerance, state, contacts);
+      SpotsReport settled = settle_hot_spots(model, gradient, options.tolerance, state, assembly.history());
       result.spots += settled.spots, result.spot_iterations += settled.iterations;
       if (settled.spots > 0) {
-        assembly.set_history(std::move(contacts));
+        assembly.set_history(std::move(settled.history));
         evaluate();
       }
     }

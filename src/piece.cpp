@@ -35,6 +35,7 @@ void add_earlier_counts(const State& earlier, RelaxResult& result) {
   };
   result.newton_iterations += count("newton_iterations");
   result.linear_iterations += count("linear_iterations");
+  result.spot_iterations += count("spot_iterations");
   result.pass_throughs += count("pass_throughs");
 }
 
@@ -142,7 +143,7 @@ JsonObject results(const Assessment& assessment, const State& state) {
   JsonObject all = results(assessment);
   const auto number = [&](const char* key) { return state.numbers.find(key); };
   const auto none = state.numbers.end();
-  for (const char* key : {"pass_throughs", "newton_iterations", "linear_iterations"})
+  for (const char* key : {"pass_throughs", "newton_iterations", "linear_iterations", "spot_iterations"})
     if (number(key) != none) all.emplace_back(key, static_cast<long long>(number(key)->second));
   if (number("converged") != none) all.emplace_back("converged", number("converged")->second != 0);
   if (number("residual") != none) all.emplace_back("residual", number("residual")->second);

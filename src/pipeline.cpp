@@ -300,6 +300,7 @@ JsonObject results(const Assessment& assessment, const RelaxResult& relaxed) {
   all.emplace_back("residual", relaxed.residual);
   all.emplace_back("newton_iterations", relaxed.newton_iterations);
   all.emplace_back("linear_iterations", relaxed.linear_iterations);
+  all.emplace_back("spot_iterations", relaxed.spot_iterations);
   return all;
 }
 
@@ -327,6 +328,7 @@ State saved_state(const RelaxResult& relaxed, const RelaxOptions& options, doubl
   state.numbers["residual"] = relaxed.residual;
   state.numbers["newton_iterations"] = relaxed.newton_iterations;
   state.numbers["linear_iterations"] = relaxed.linear_iterations;
+  state.numbers["spot_iterations"] = relaxed.spot_iterations;
   return state;
 }
 

@@ -10,6 +10,7 @@
 #include <QPushButton>
 #include <QScrollArea>
 #include <QVBoxLayout>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -43,12 +44,16 @@ struct YarnField {
   std::optional<double> YarnData::*value;
   const char* tip;
 };
-constexpr std::array<YarnField, 5> fields{
+constexpr std::array<YarnField, 7> fields{
     {{"Linear density", "tex", 1, 20000, 5, &YarnData::linear_density_tex, "Mass per length: 1 tex = 1 g/km"},
      {"Diameter", "mm", 0.05, 20, 0.05, &YarnData::diameter_mm, "Outer diameter of the soft yarn"},
      {"Bending", "mN mm\u00b2", 0.01, 10000, 1, &YarnData::bend_stiffness_mN_mm2, "Bending stiffness"},
      {"Stretching", "cN", 1, 1e6, 100, &YarnData::stretch_stiffness_cN, "Force that would double its length"},
-     {"Friction", "", 0, 2, 0.05, &YarnData::friction_coefficient, "Coefficient of yarn on yarn"}}};
+     {"Friction", "", 0, 2, 0.05, &YarnData::friction_coefficient, "Coefficient of yarn on yarn"},
+     {"Liveliness", "tpm", -2000, 2000, 50, &YarnData::liveliness_per_m,
+      "Turns per metre by which free yarn would turn back: Z twist positive, S twist negative"},
+     {"Twisting", "mN mm\u00b2", 0, 10000, 1, &YarnData::twist_stiffness_mN_mm2,
+      "Twist stiffness; of lively yarn three tenths of the bending stiffness where it is not stated"}}};
 
 }  // namespace
 
@@ -223,12 +228,12 @@ void FabricPanel::change_yarn(std::size_t yarn, const std::function<void(YarnDat
   set_header(QString::fromStdString(header), QString::fromStdString(yarn_value(of)));
 }
 
-// Unstated numbers stand at the low end and are not written until they are changed.
+// Unstated numbers stand at the low end, or at zero, and are not written until they are changed.
 void FabricPanel::show_yarn_fields(std::size_t yarn) {
   const YarnData& of = session_.notation()->yarns[yarn].data;
   for (std::size_t k = 0; k < fields.size(); ++k) {
     QDoubleSpinBox* box = yarn_fields_[yarn].numbers[k];
-    if (!box->hasFocus()) box->setValue((of.*fields[k].value).value_or(box->minimum()));
+    if (!box->hasFocus()) box->setValue((of.*fields[k].value).value_or(std::max(box->minimum(), 0.0)));
   }
   if (!of.colour.empty())
     yarn_fields_[yarn].colour->setStyleSheet(

@@ -50,6 +50,7 @@ class Measurements(TypedDict, total=False):
     pass_throughs: int
     newton_iterations: int
     linear_iterations: int
+    spot_iterations: int
     converged: bool
     residual: float
 

@@ -24,7 +24,10 @@ void LocalShift::raise_node(int node, double boost, double least, const std::vec
                             double shift) {
   const auto i = static_cast<std::size_t>(node);
   const double now = std::max({static_cast<double>(before[i]), shift, least});
-  own_[i] = std::max(own_[i], static_cast<float>(boost * now));
+  const auto raised = static_cast<float>(boost * now);
+  if (!(raised > own_[i])) return;
+  own_[i] = raised;
+  raised_.push_back(node);
 }
 
 const std::vector<float>& LocalShift::weights(double shift) {

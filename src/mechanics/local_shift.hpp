@@ -4,6 +4,7 @@
 // held a step back, fading as steps go by.
 #pragma once
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "mechanics/safe_step.hpp"
@@ -23,6 +24,8 @@ class LocalShift {
   bool raise(const std::vector<double>& before, const std::vector<double>& after, double gain, double shift);
   // Four times more.
   void raise(const std::vector<std::int32_t>& nodes, double shift);
+  // Control points that were raised since this was asked last, some more than once.
+  std::vector<std::int32_t> take_raised() { return std::exchange(raised_, {}); }
   void fade();
   bool empty() const { return own_.empty(); }
 
@@ -35,6 +38,7 @@ class LocalShift {
   const YarnModel& model_;
   std::vector<float> own_;  // [control point] shift, counts where it is more than the common one; or empty
   std::vector<float> weights_;
+  std::vector<std::int32_t> raised_;
 };
 
 }  // namespace loopwright

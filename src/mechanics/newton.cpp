@@ -24,6 +24,14 @@ double largest_measure_force(const Unknowns& g) {
   return std::max({std::abs(g.g[0]), std::abs(g.g[1]), std::abs(g.g[2])});
 }
 
+bool is_mostly_quiet(const Unknowns& g, double force) {
+  const auto loud = std::count_if(g.u.begin(), g.u.end(),
+                                  [&](const Vec3& f) { return !(squared_norm(f) < force * force); });
+  // The piece's size is pulled at by all of its yarns at once.
+  const double on_size = largest_measure_force(g) / std::sqrt(static_cast<double>(g.u.size()));
+  return 200 * static_cast<std::size_t>(loud) <= g.u.size() && on_size < force;
+}
+
 // The next shift: smaller after a full step that the quadratic model foretold well, larger after a poor one.
 double next_shift(double shift, const TakenStep& taken, double energy) {
   const double predicted = -taken.scale * taken.slope * (1 - 0.5 * taken.scale);
@@ -60,7 +68,7 @@ NewtonResult newton(const YarnModel& model, YarnState& state, const NewtonOption
     evaluate();
     if (search.is_large() && !result.converged && result.iterations < options.most_iterations) {
       SpotsReport settled = settle_hot_spots(model, gradient, options.tolerance, state, assembly.history());
-      result.spots += settled.spots, result.spot_iterations += settled.iterations;
+      result.spot_iterations += settled.iterations;
       if (settled.spots > 0) {
         assembly.set_history(std::move(settled.history));
         evaluate();
@@ -69,12 +77,15 @@ NewtonResult newton(const YarnModel& model, YarnState& state, const NewtonOption
     if (options.on_iteration && !options.on_iteration(result.iterations, result.residual))
       result.stopped = true;
     if (result.converged || result.stopped || result.iterations >= options.most_iterations) break;
+    result.quiet = search.is_large() && is_mostly_quiet(gradient, options.mostly_quiet);
+    if (result.quiet) break;
     // A large piece that starts near rest needs no large shift, and would take costly steps to be rid of it.
     if (result.iterations == 0 && search.is_large())
       shift = std::min(shift, std::max(result.residual, least_first_shift));
 
     const double energy = result.energy.total();
     if (!search.take({state, gradient, energy, result.residual, range}, hessian, shift, taken)) break;
+    if (result.iterations == 0) result.first_shift = shift;
     if (taken.scale == 0) {
       if (shift > 1e12) break;
       shift = std::max(16 * shift, 1e-3);

@@ -32,17 +32,23 @@ RelaxResult relax_as_it_is(const Fabric& fabric, const RelaxOptions& options) {
   const auto run = [&](const YarnModel& model, double radius, double tolerance, int iterations) {
     NewtonOptions newton_options;
     newton_options.tolerance = tolerance;
+    // Growth need not wait for the last places: the next stage moves them again.
+    newton_options.mostly_quiet = grown ? 0 : 50 * tolerance;
     newton_options.most_iterations = std::min(iterations, options.most_iterations - result.newton_iterations);
     newton_options.on_iteration = [&](int i, double residual) {
       if (!options.on_progress) return true;
       return options.on_progress(
           {radius < 1 ? "grow-in" : "relax", result.newton_iterations + i, residual, radius, &state});
     };
+    // Stages of growth that end early all start about as far from rest; every shift that is too small costs
+    // a factor.
+    if (!grown && newton_result.quiet) shift = std::max(shift, 0.25 * newton_result.first_shift);
     newton_result = newton(model, state, newton_options, shift, grown ? &result.history : nullptr);
     shift = std::max(newton_result.shift, 1e-3);
     result.newton_iterations += newton_result.iterations;
     result.linear_iterations += newton_result.linear_iterations;
     result.factorisations += newton_result.factorisations;
+    result.spot_iterations += newton_result.spot_iterations;
     result.pass_throughs += newton_result.crossings;
     result.stopped = newton_result.stopped;
   };
@@ -96,6 +102,7 @@ void add_counts(RelaxResult& to, const RelaxResult& from) {
   to.newton_iterations += from.newton_iterations;
   to.linear_iterations += from.linear_iterations;
   to.factorisations += from.factorisations;
+  to.spot_iterations += from.spot_iterations;
   to.pass_throughs += from.pass_throughs;
 }
 

@@ -42,6 +42,7 @@ struct RelaxResult {
   double residual = 0;          // largest force on a control point, B/d^2
   double measure_residual = 0;  // largest dE/d(width or height) of one wale or course, B/d^2
   int newton_iterations = 0, linear_iterations = 0, factorisations = 0;
+  int spot_iterations = 0;    // Newton steps of places settled by themselves (hot_spots.hpp)
   Measures measure_forces{};  // dE/d(width, height, skew), B/d^2, of measures that are held as well
   ContactHistory history;     // friction's, for a run that goes on from here
   FlatPlates plates;          // between which a finite piece lies; stiffness 0: none

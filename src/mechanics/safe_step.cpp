@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/parallel.hpp"
+#include "mechanics/common_motion.hpp"
 
 namespace loopwright {
 namespace {
@@ -15,73 +16,6 @@ namespace {
 // are 0.12 d long by default.
 constexpr double bent_away = 0.016;
 constexpr double smallest_ratio = 0.05;  // of motion to distance: less than this never cuts a step
-
-// A step taken apart into an affine map x -> x + T x + t of all space and what is left.
-struct AffineMotion {
-  double in_plane = 0, across = 0;  // norms of the columns x, y of T, and of its column z
-  double thickness = 0;             // of the fabric along z
-  double loose = 0;                 // the largest motion that is left
-  std::vector<FarNode> far;         // those that move more than they may
-};
-
-// Pieces: least squares over control points; their 4 x 4 moment matrix is solved by Gaussian elimination with
-// a small ridge (flat pieces have no z extent). Periodic cells: the lattice's own map, so that what is left
-// is the same in every image, and least squares for z alone.
-// `limit`: motions beyond it are listed.
-AffineMotion affine_motion(const YarnState& state, const YarnState& target, bool periodic, double limit) {
-  const std::size_t n = state.nodes.size();
-  Vec3 centre;
-  for (const Vec3& p : state.nodes) centre += p;
-  centre *= 1.0 / static_cast<double>(n);
-  std::array<Vec3, 3> lattice{};  // its columns of T
-  if (periodic) {
-    lattice[0].x = target.width / state.width - 1;
-    lattice[1] = {(target.skew - state.skew - lattice[0].x * state.skew) / state.height,
-                  target.height / state.height - 1, 0};
-  }
-  const auto left = [&](std::size_t i) {
-    const Vec3 p = state.nodes[i] - centre;
-    return target.nodes[i] - state.nodes[i] - p.x * lattice[0] - p.y * lattice[1];
-  };
-  std::array<std::array<double, 7>, 4> m{};  // moments of (x, y, z, 1), then three right-hand sides
-  for (std::size_t i = 0; i < n; ++i) {
-    const Vec3 p = state.nodes[i] - centre, s = left(i);
-    const std::array<double, 4> x{periodic ? 0 : p.x, periodic ? 0 : p.y, p.z, 1};
-    for (std::size_t r = 0; r < 4; ++r) {
-      for (std::size_t c = 0; c < 4; ++c) m[r][c] += x[r] * x[c];
-      m[r][4] += x[r] * s.x;
-      m[r][5] += x[r] * s.y;
-      m[r][6] += x[r] * s.z;
-    }
-  }
-  for (std::size_t r = 0; r < 3; ++r) m[r][r] += 1e-9 * (m[0][0] + m[1][1] + m[2][2]) + 1e-12;
-  for (std::size_t k = 0; k < 4; ++k)
-    for (std::size_t r = 0; r < 4; ++r) {
-      if (r == k) continue;
-      const double f = m[r][k] / m[k][k];
-      for (std::size_t c = k; c < 7; ++c) m[r][c] -= f * m[k][c];
-    }
-  std::array<Vec3, 4> column;  // of T, then t
-  for (std::size_t k = 0; k < 4; ++k) column[k] = Vec3{m[k][4], m[k][5], m[k][6]} / m[k][k];
-
-  AffineMotion motion;
-  double low = 0, high = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const Vec3 p = state.nodes[i] - centre;
-    low = std::min(low, p.z);
-    high = std::max(high, p.z);
-    const double loose2 =
-        squared_norm(left(i) - p.x * column[0] - p.y * column[1] - p.z * column[2] - column[3]);
-    motion.loose = std::max(motion.loose, loose2);
-    if (loose2 > limit * limit)
-      motion.far.push_back({static_cast<std::int32_t>(i), std::sqrt(loose2) / limit});
-  }
-  motion.loose = std::sqrt(motion.loose);
-  motion.thickness = high - low;
-  motion.in_plane = std::sqrt(squared_norm(column[0] + lattice[0]) + squared_norm(column[1] + lattice[1]));
-  motion.across = norm(column[2]);
-  return motion;
-}
 
 // Yarn round a contact sample as a straight stick: its half, and how far that turns in the step.
 struct Stick {
@@ -184,6 +118,17 @@ double stick_distance2(const Vec3& d, const Vec3& a, const Vec3& b) {
     s = aa > 0 ? std::clamp((t * ab - da) / aa, -1.0, 1.0) : 0;
   }
   return squared_norm(d + s * a - t * b);
+}
+
+// Control points that move beyond the common motion by more than `limit`.
+std::vector<FarNode> far_nodes(const CommonMotion& common, double limit) {
+  const double most = *std::max_element(common.left.begin(), common.left.end()),
+               beside = std::max(0.0, common.loose - most);  // what the common motion itself is unsure of
+  std::vector<FarNode> far;
+  for (std::size_t i = 0; i < common.left.size(); ++i)
+    if (common.left[i] + beside > limit)
+      far.push_back({static_cast<std::int32_t>(i), (common.left[i] + beside) / limit});
+  return far;
 }
 
 }  // namespace
@@ -312,17 +257,12 @@ SafeStep safe_step(const YarnModel& model, const Assembly& assembly, const YarnS
   // Pairs outside the list stay outside contact: each of the two may move by less than half of what parts
   // them from it.
   const double loose_limit = 0.45 * (range - outer_diameter);
-  AffineMotion affine = affine_motion(state, target, model.periodic,
-                                      list_causes ? loose_limit : std::numeric_limits<double>::infinity());
-  result.loose_motion = affine.loose;
-  result.far = std::move(affine.far);
   if (result.pair_ratio > share) result.scale = share / result.pair_ratio;
+  const CommonMotion common = common_motion(model, state, target, range, loose_limit / result.scale);
+  result.loose_motion = common.loose;
+  if (list_causes) result.far = far_nodes(common, loose_limit);
   if (result.loose_motion * result.scale > loose_limit) result.scale = loose_limit / result.loose_motion;
-  // An affine map moves no yarn through another as long as it does not flatten space. Over a distance D >=
-  // range it moves two points by at most in_plane D + across min(D, thickness) against each other; with twice
-  // the loose motion that must stay below D, which is hardest at D = range.
-  const double far_ratio =
-      affine.in_plane + affine.across * std::min(1.0, affine.thickness / range) + 2 * affine.loose / range;
+  const double far_ratio = common.far_ratio(range);
   if (far_ratio * result.scale > 0.9) result.scale = 0.9 / far_ratio;
   return result;
 }

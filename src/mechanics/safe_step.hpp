@@ -4,8 +4,8 @@
 // every pair of their points, the relative motion stays below their distance. Checked for every pair of
 // segments within the list's range, with the yarn as straight sticks round the contact samples (0.12 d apart
 // at rest length; sticks tile the yarn as it lies, so thin and stretched yarn is seen too); all other pairs
-// are farther apart than the range, so that motion beyond an affine map (which moves no yarn through another)
-// is capped by the range.
+// are farther apart than the range, so that motion beyond what they have in common (common_motion.hpp) is
+// capped by the range.
 #pragma once
 #include "mechanics/assembly.hpp"
 
@@ -26,13 +26,13 @@ struct FarNode {
 struct SafeStep {
   double scale = 1;         // the largest allowed multiple of the step, at most 1
   double pair_ratio = 0;    // relative motion over distance of the worst pair at scale 1
-  double loose_motion = 0;  // largest motion beyond the best affine map at scale 1, in d
+  double loose_motion = 0;  // largest motion beyond the common one at scale 1, in d
   int worst_a = -1, worst_b = -1;
   // False where yarns are nearer than sticks can tell from touching (0.016 d): the step is not certified
   // then.
   bool surely_apart = true;
   // What holds the step back, if it was asked for: all pairs that move more than `share`, and the control
-  // points that move farther beyond the affine map than pairs were looked for.
+  // points that move farther beyond the common motion than pairs were looked for.
   std::vector<NearPair> near;
   std::vector<FarNode> far;
 };

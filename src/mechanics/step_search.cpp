@@ -40,9 +40,10 @@ bool StepSearch::solve(const StepPlace& at, BlockMatrix& hessian, double& shift,
   if (is_large()) assembly_.drop_places();
   weigh(shift);
   hessian.measure_metric = {1, 1, 1};
+  local_.take_raised();
   for (int again = 0;; ++again) {
     const StepSolver::Report report =
-        solver_.solve(hessian, at.state, at.gradient, accuracy, shift, step_, raise_at);
+        solver_.solve(hessian, at.state, at.gradient, accuracy, shift, step_, raise_at, local_.take_raised());
     if (!report.solved) return false;
     taken.raised += report.raised;
     taken.slope = dot(at.gradient, step_);

@@ -199,15 +199,21 @@ TEST(WeighedMetric, WeighsMotionAgainstOthersNotMotionWithThem) {
   EXPECT_LT(metric_of(hessian, together) / static_cast<double>(nodes), 0.002 * metric_of(hessian, apart));
 }
 
-// A diagonal matrix without border.
-BlockMatrix diagonal(const std::vector<double>& values) {
+// A matrix without border that is diagonal, but for the coupling of its first control point and its last.
+BlockMatrix diagonal(const std::vector<double>& values, double coupling = 0) {
   BlockMatrix m;
   m.row_start = {0};
+  const auto add = [&m](std::size_t column, double value, double metric) {
+    m.column.push_back(static_cast<std::int32_t>(column));
+    m.block.push_back({value, 0, 0, 0, value, 0, 0, 0, value});
+    m.metric.push_back(metric);
+  };
+  const std::size_t last = values.size() - 1;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    m.column.push_back(static_cast<std::int32_t>(i));
-    m.block.push_back({values[i], 0, 0, 0, values[i], 0, 0, 0, values[i]});
-    m.metric.push_back(1);
-    m.row_start.push_back(static_cast<std::int32_t>(i) + 1);
+    if (coupling != 0 && i == last) add(0, coupling, 0);
+    add(i, values[i], 1);
+    if (coupling != 0 && i == 0) add(last, coupling, 0);
+    m.row_start.push_back(static_cast<std::int32_t>(m.column.size()));
   }
   m.border.assign(values.size(), Block{});
   m.corner = {1, 0, 0, 0, 1, 0, 0, 0, 1};
@@ -225,6 +231,34 @@ TEST(ConjugateGradient, SaysWhereTheMatrixBends) {
   const ConjugateGradientResult lifted = conjugate_gradient(matrix, 6, copy, b, 1e-6, {}, x);
   EXPECT_TRUE(lifted.converged);
   EXPECT_TRUE(lifted.bent.empty());
+}
+
+// Two far corners that only together bend the matrix: no patch and no plate sees it, the fabric's answer to
+// its width does.
+TEST(Schwarz, GoesOnWhereTheAnswerToAMeasureBent) {
+  constexpr int side = 30;
+  std::vector<Vec3> places;
+  for (int i = 0; i < side * side; ++i)
+    places.push_back({static_cast<double>(i % side), static_cast<double>(i / side), 0});
+  BlockMatrix m = diagonal(std::vector<double>(places.size(), 1), -2);
+  m.border.front()[0] = m.border.back()[0] = 1;
+  m.measure_metric = {1, 1, 1};
+  Schwarz schwarz;
+  const CoarseSpace no_binding_points;
+  schwarz.set_patches(places, std::vector<std::uint8_t>(places.size(), 0), m, no_binding_points);
+  EXPECT_FALSE(schwarz.factor(m, 0));
+  EXPECT_TRUE(schwarz.indefinite().empty()) << "all patches are definite";
+  constexpr double shift = 10;
+  ASSERT_TRUE(schwarz.factor(m, shift));
+  Unknowns x, b, found;
+  x.u.assign(places.size(), Vec3{1, 2, 3});
+  x.g = {4, 5, 6};
+  multiply(m, shift, x, b);
+  const ConjugateGradientResult solved = conjugate_gradient(
+      m, shift, [&](const Unknowns& r, Unknowns& z) { schwarz.solve(r, z); }, b, 1e-9, {}, found);
+  EXPECT_TRUE(solved.converged);
+  EXPECT_NEAR(found.g[0], 4, 1e-6);
+  EXPECT_NEAR(found.u.front().x, 1, 1e-6);
 }
 
 TEST(Schwarz, SaysWhichPatchesBendAndTakesThemAgain) {

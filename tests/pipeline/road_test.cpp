@@ -54,6 +54,7 @@ TEST(Road, PeriodicCellRelaxesAndIsMeasured) {
                           "Ks",
                           "newton_iterations",
                           "linear_iterations",
+                          "spot_iterations",
                           "residual",
                           "converged",
                           "interlacings",

@@ -268,7 +268,12 @@ class WindowTest : public WindowFixture {
         text().contains(QStringLiteral(";;Yarn-A: wool 2/28 Nm colour=#b03020            ; the usual one")));
     window_->findChild<QDoubleSpinBox*>(QStringLiteral("Friction A"))->setValue(0.4);
     QVERIFY2(text().contains(QStringLiteral("friction=0.4")), qPrintable(text()));
+    auto* liveliness = window_->findChild<QDoubleSpinBox*>(QStringLiteral("Liveliness A"));
+    QCOMPARE(liveliness->value(), 0);
+    liveliness->setValue(-150);
+    QVERIFY2(text().contains(QStringLiteral("liveliness=-150 tpm")), qPrintable(text()));
     QVERIFY(text().contains(QStringLiteral("colour=#b03020")));
+    liveliness->setValue(0);
     yarn->setText(QStringLiteral("wool 2/28 Nm diameter=-3mm"));
     const QString before = text();
     emit yarn->editingFinished();

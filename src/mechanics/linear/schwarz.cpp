@@ -190,6 +190,16 @@ bool Schwarz::factor_again(const BlockMatrix& matrix, double shift) {
   return factor_patches(matrix, shift, false) && answer_measures(matrix, shift);
 }
 
+bool Schwarz::factor_round(const std::vector<std::int32_t>& nodes, const BlockMatrix& matrix, double shift) {
+  std::vector<std::uint8_t> in(control_points_, 0);
+  for (const std::int32_t i : nodes) in[place(i)] = 1;
+  for (const auto& patch : patches_)
+    if (std::any_of(patch->nodes.begin(), patch->nodes.end(),
+                    [&](std::int32_t i) { return in[place(i)] != 0; }))
+      patch->definite = false;
+  return factor_again(matrix, shift);
+}
+
 std::vector<std::int32_t> Schwarz::indefinite() const {
   std::vector<std::int32_t> nodes;
   for (const auto& patch : patches_)
@@ -198,11 +208,12 @@ std::vector<std::int32_t> Schwarz::indefinite() const {
 }
 
 bool Schwarz::answer_measures(const BlockMatrix& matrix, double shift) {
-  const bool known = !answers_.empty();
   answers_.resize(3);
   Unknowns product;
   for (std::size_t k = 0; k < 3; ++k) {
     Unknowns& answer = answers_[k];
+    // Not known yet, also where an earlier matrix bent before it came to this one.
+    const bool known = answer.u.size() == control_points_;
     if (!known) answer.u.assign(control_points_, Vec3{});
     answer.g = {};
     answer.g[k] = 1;

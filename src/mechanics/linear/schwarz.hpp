@@ -36,6 +36,8 @@ class Schwarz {
   // factor_again() factors only these.
   std::vector<std::int32_t> indefinite() const;
   bool factor_again(const BlockMatrix& matrix, double shift);
+  // Factors the patches of these control points anew, where the metric weighs more than it did.
+  bool factor_round(const std::vector<std::int32_t>& nodes, const BlockMatrix& matrix, double shift);
   void solve(const Unknowns& b, Unknowns& x);
 
   int iterations = 0;  // that answers to the measures took, over all calls of factor()

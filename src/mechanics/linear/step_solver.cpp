@@ -23,10 +23,11 @@ StepSolver::StepSolver(const YarnModel& model) : model_(model) {}
 
 StepSolver::Report StepSolver::solve(const BlockMatrix& hessian, const YarnState& state,
                                      const Unknowns& gradient, double accuracy, double& shift, Unknowns& step,
-                                     const RaiseAt& raise_at) {
+                                     const RaiseAt& raise_at, const std::vector<std::int32_t>& raised) {
   Report report;
   if (model_.nodes > many_nodes && !model_.periodic) {
-    report.solved = solve_patched(hessian, state, gradient, accuracy, shift, report.raised, step, raise_at);
+    report.solved =
+        solve_patched(hessian, state, gradient, accuracy, shift, report.raised, step, raise_at, raised);
   } else {
     if (current_ && model_.nodes > few_nodes) {
       const ConjugateGradientResult cg = conjugate_gradient(
@@ -70,7 +71,7 @@ bool StepSolver::solve_direct(const BlockMatrix& hessian, const Unknowns& gradie
 
 bool StepSolver::solve_patched(const BlockMatrix& hessian, const YarnState& state, const Unknowns& gradient,
                                double accuracy, double& shift, int& raised, Unknowns& step,
-                               const RaiseAt& raise_at) {
+                               const RaiseAt& raise_at, const std::vector<std::int32_t>& raised_at) {
   if (!schwarz_.ready()) schwarz_.set_patches(state.nodes, model_.held, hessian, model_.binding_points);
   const auto precondition = [this](const Unknowns& r, Unknowns& z) { schwarz_.solve(r, z); };
   const double digits = std::log(1 / accuracy);
@@ -88,6 +89,8 @@ bool StepSolver::solve_patched(const BlockMatrix& hessian, const YarnState& stat
   // First with the factor at hand, until a new one and its iterations would take less than what is left. What
   // was reached by then is gone on from.
   ConjugateGradientLimits limits{.most = most_patched};
+  // A preconditioner that does not know of the weights costs more than the patches where they are.
+  if (current_ && !raised_at.empty()) current_ = schwarz_.factor_round(raised_at, hessian, shift);
   if (current_) {
     limits.patience = patched_factor + static_cast<int>(usual_ * digits);
     const ConjugateGradientResult cg =

@@ -22,10 +22,12 @@ class StepSolver {
   };
   // `accuracy`: relative residual of iterative solves, in the preconditioner's norm.
   // `raise_at`, if there is one, makes the hessian's metric weigh more at the control points it is given, so
-  // that not all of a large piece has to be shifted for some.
+  // that not all of a large piece has to be shifted for some. `raised`: where the
+  // metric weighs more than in the last call, for the same matrix but for that.
   using RaiseAt = std::function<void(const std::vector<std::int32_t>& nodes, double shift)>;
   Report solve(const BlockMatrix& hessian, const YarnState& state, const Unknowns& gradient, double accuracy,
-               double& shift, Unknowns& step, const RaiseAt& raise_at = {});
+               double& shift, Unknowns& step, const RaiseAt& raise_at = {},
+               const std::vector<std::int32_t>& raised = {});
 
   int factorisations = 0, iterations = 0;  // over all calls; a direct solve counts as one iteration
 
@@ -33,7 +35,8 @@ class StepSolver {
   bool solve_direct(const BlockMatrix& hessian, const Unknowns& gradient, double& shift, int& raised,
                     Unknowns& step);
   bool solve_patched(const BlockMatrix& hessian, const YarnState& state, const Unknowns& gradient,
-                     double accuracy, double& shift, int& raised, Unknowns& step, const RaiseAt& raise_at);
+                     double accuracy, double& shift, int& raised, Unknowns& step, const RaiseAt& raise_at,
+                     const std::vector<std::int32_t>& raised_at);
 
   const YarnModel& model_;
   Cholesky cholesky_;

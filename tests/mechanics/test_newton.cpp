@@ -17,9 +17,7 @@ struct Sheet {
 Sheet sheet(int loud) {
   std::vector<FabricYarn> yarns;
   for (int line = 0; line < 60; ++line)
-    yarns.push_back(free_yarn(140, 1, [line](int i) {
-      return Vec3{1.0 * i, 3.0 * line, 0};
-    }));
+    yarns.push_back(free_yarn(140, 1, [line](int i) { return Vec3{1.0 * i, 3.0 * line, 0}; }));
   const Fabric fabric = fabric_of(std::move(yarns));
   Sheet made{build_yarn_model(fabric, frictionless().model), build_yarn_state(fabric)};
   for (int k = 0; k < loud; ++k) made.state.nodes[static_cast<std::size_t>(70 + 140 * k)].z += 0.1;

@@ -77,7 +77,7 @@ NewtonResult newton(const YarnModel& model, YarnState& state, const NewtonOption
     if (options.on_iteration && !options.on_iteration(result.iterations, result.residual))
       result.stopped = true;
     if (result.converged || result.stopped || result.iterations >= options.most_iterations) break;
-    result.quiet = search.is_large() && is_mostly_quiet(gradient, options.mostly_quiet);
+    result.quiet = search.is_large() && !model.periodic && is_mostly_quiet(gradient, options.mostly_quiet);
     if (result.quiet) break;
     // A large piece that starts near rest needs no large shift, and would take costly steps to be rid of it.
     if (result.iterations == 0 && search.is_large())

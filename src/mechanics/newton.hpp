@@ -11,8 +11,8 @@ namespace loopwright {
 
 struct NewtonOptions {
   double tolerance = 2e-4;
-  // A large piece may end where all but a two-hundredth of its control points are below this force: the rest
-  // is left to a run that follows. 0: it must not.
+  // A large piece, not periodic, may end where all but a two-hundredth of its control points are below this
+  // force: the rest is left to a run that follows. 0: it must not.
   double mostly_quiet = 0;
   int most_iterations = 100;
   std::function<bool(int iteration, double residual)> on_iteration;  // false: stop

@@ -9,12 +9,6 @@
 #include "mechanics/assembly_sums.hpp"
 
 namespace loopwright {
-namespace {
-
-// Chunks are ranges of control points that depend on the fabric alone.
-int chunk_count(int nodes) { return std::clamp(nodes / 3000, 1, 16); }
-
-}  // namespace
 
 Assembly::Assembly(const YarnModel& model) : model_(model), twist_(model) {}
 
@@ -136,69 +130,22 @@ EnergyParts Assembly::with_friction(const YarnState& state, std::vector<double>*
   return parts;
 }
 
+EnergyParts Assembly::gradient(const YarnState& state, Unknowns& gradient) {
+  return terms(state, &gradient, nullptr);
+}
+
 EnergyParts Assembly::hessian(const YarnState& state, Unknowns& gradient, BlockMatrix& hessian) {
   return terms(state, &gradient, &hessian);
 }
 
-void Assembly::metric(BlockMatrix& matrix, const std::vector<float>& weights) const {
-  constexpr double own_reach = 10;     // d
-  constexpr double own_motion = 1e-3;  // keeps rigid motion and the sliding of whole yarns finite
-  matrix.metric.assign(matrix.column.size(), 0);
-  const auto add_to = [&](std::int32_t i, std::int32_t j, double v) {
-    const bool held_i = model_.held[static_cast<std::size_t>(i)],
-               held_j = model_.held[static_cast<std::size_t>(j)];
-    if (held_i || held_j) return;
-    matrix.metric[matrix.place(i, j)] += v;
-  };
-  const auto base_of = [&](std::size_t k) { return model_.base[k]; };
-  const auto weight = [&](std::int32_t i) {
-    return weights.empty() ? 1.0 : static_cast<double>(weights[static_cast<std::size_t>(i)]);
-  };
-  for (std::int32_t i = 0; i < model_.nodes; ++i) add_to(i, i, own_motion * weight(i));
-  for (const YarnModel::Yarn& yarn : model_.yarns) {
-    const int links = yarn.periodic ? yarn.nodes : yarn.nodes - 1;
-    for (int k = 0; k < links; ++k) {
-      const auto i = base_of(static_cast<std::size_t>(yarn.first_extended + k)),
-                 j = base_of(static_cast<std::size_t>(yarn.first_extended + k + 1));
-      const double w = std::max(weight(i), weight(j));
-      add_to(i, i, w);
-      add_to(j, j, w);
-      add_to(i, j, -w);
-      add_to(j, i, -w);
-    }
-  }
-  // Segments in contact: relative motion of their middles (weights 1/48, 23/48, 23/48, 1/48).
-  constexpr std::array<double, 4> middle{1 / 48.0, 23 / 48.0, 23 / 48.0, 1 / 48.0};
-  const auto add_middles = [&](const FourNodes& rows, const FourNodes& columns, double factor) {
-    const bool run = UpperBlocks::is_run(columns);  // then they lie one behind the other in every row
-    for (std::size_t k = 0; k < 4; ++k) {
-      if (model_.held[static_cast<std::size_t>(rows[k])]) continue;
-      const std::size_t first = matrix.place(rows[k], columns[0]);
-      for (std::size_t l = 0; l < 4; ++l)
-        if (!model_.held[static_cast<std::size_t>(columns[l])])
-          matrix.metric[run ? first + l : matrix.place(rows[k], columns[l])] +=
-              factor * middle[k] * middle[l];
-    }
-  };
-  for (const std::int32_t at : active_) {
-    const SegmentPair& pair = pairs_[static_cast<std::size_t>(at)];
-    // The yarn's own links tell what lies near along it.
-    if (pair.same_yarn && (model_.periodic || std::abs(pair.arc_offset) < own_reach)) continue;
-    const FourNodes a = nodes_of(pair.a), b = nodes_of(pair.b);
-    const double more = std::max(weight(a[1]), weight(b[1]));
-    add_middles(a, a, more);
-    add_middles(b, b, more);
-    add_middles(a, b, -more);
-    add_middles(b, a, -more);
-  }
-}
-
 // The couple of every yarn on its control points, and how it changes with the turn of the whole yarn.
-void Assembly::add_dyads(Unknowns& gradient, BlockMatrix& hessian) {
-  hessian.dyads = twist_.dyads(extended_, fraction_);
+void Assembly::add_dyads(Unknowns& gradient, BlockMatrix* hessian) {
+  std::vector<Dyad> dyads = twist_.dyads(extended_, fraction_);
   std::size_t next = 0;
   for (std::size_t y = 0; y < model_.yarns.size(); ++y)
-    if (model_.yarns[y].twist_stiffness > 0) hessian.dyads[next++].add_to(twist_.couple(y), gradient);
+    if (model_.yarns[y].twist_stiffness > 0) dyads[next++].add_to(twist_.couple(y), gradient);
+  if (!hessian) return;
+  hessian->dyads = std::move(dyads);
   twist_.settle();
 }
 
@@ -215,22 +162,22 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
     gradient->u.assign(nodes, Vec3{});
     gradient->g = {};
   }
-  if (matrix) {
+  if (gradient) {
     active_.clear();
     for (std::size_t k = 0; k < pairs_.size(); ++k)
       if (in_contact(pairs_[k])) active_.push_back(static_cast<std::int32_t>(k));
-    build_pattern(*matrix);
     friction_.assign(model_.friction > 0 ? active_.size() : 0, {});
   }
+  if (matrix) build_pattern(*matrix);
 
   if (twist_.counts()) twist_.measure(state, extended_);
-  if (!matrix) find_moved();
-  const int chunks = chunk_count(model_.nodes);
+  if (!gradient) find_moved();
+  const int chunks = chunk_count();
   std::vector<Chunk> partial(static_cast<std::size_t>(chunks));
   parallel_chunks(chunks, [&](int c) {
     Chunk& chunk = partial[static_cast<std::size_t>(c)];
-    chunk.low = static_cast<std::int32_t>(static_cast<std::int64_t>(model_.nodes) * c / chunks);
-    chunk.high = static_cast<std::int32_t>(static_cast<std::int64_t>(model_.nodes) * (c + 1) / chunks);
+    chunk.low = first_of_chunk(c);
+    chunk.high = first_of_chunk(c + 1);
     chunk.state = &state;
     chunk.gradient = gradient;
     chunk.matrix = matrix;
@@ -253,7 +200,7 @@ EnergyParts Assembly::terms(const YarnState& state, Unknowns* gradient, BlockMat
   }
   if (twist_.counts()) {
     energy.twist = twist_.energy();
-    if (matrix) add_dyads(*gradient, *matrix);
+    if (gradient) add_dyads(*gradient, matrix);
   }
   for (std::size_t i = 0; i < model_.point_loads.size(); ++i) {
     const Vec3& f = model_.point_loads[i];

@@ -5,6 +5,7 @@
 // 0]] and (xi, eta) the point's fractional coordinates, plus (m, n) for an image. Held points move with the
 // measures only.
 #pragma once
+#include <algorithm>
 #include <vector>
 
 #include "mechanics/contact/segment_pairs.hpp"
@@ -45,6 +46,8 @@ class Assembly {
   // contact there. With friction this also takes down every contact's load, normal and place: until the next
   // call, energy() counts friction work from this state.
   EnergyParts hessian(const YarnState& state, Unknowns& gradient, BlockMatrix& hessian);
+  // The same without the Hessian: half of the work.
+  EnergyParts gradient(const YarnState& state, Unknowns& gradient);
   // dE/d(width, height, skew) of the cloth at the last Hessian's state, without loads: what the frame bears,
   // for measures that are not free as well.
   const Measures& measure_forces() const { return measure_forces_; }
@@ -83,6 +86,11 @@ class Assembly {
   EnergyParts terms(const YarnState& state, Unknowns* gradient, BlockMatrix* hessian,
                     std::vector<double>* of_segments = nullptr);
   FourNodes nodes_of(int segment) const;
+  // Chunks are ranges of control points that depend on the fabric alone.
+  int chunk_count() const { return std::clamp(model_.nodes / 3000, 1, 16); }
+  std::int32_t first_of_chunk(int chunk) const {
+    return static_cast<std::int32_t>(static_cast<std::int64_t>(model_.nodes) * chunk / chunk_count());
+  }
   bool touches(const Chunk& chunk, int segment) const;
   void gather(const std::int32_t* segments, std::size_t count, bool fractions, SegmentLanes& to) const;
   void add_segments(Chunk& chunk) const;
@@ -91,7 +99,7 @@ class Assembly {
   bool contact_input(const SegmentPair& pair, const Vec3& image, double reach, ContactPairInput& in) const;
   void add_contacts(Chunk& chunk);
   FrictionContact add_friction(const SegmentPair& pair, const YarnState& state, ContactTerm& term) const;
-  void add_dyads(Unknowns& gradient, BlockMatrix& hessian);
+  void add_dyads(Unknowns& gradient, BlockMatrix* hessian);
   void scatter(const SegmentLanesTerm& term, std::size_t lane, int segment, Chunk& chunk) const;
   void scatter(const ContactTerm& term, const SegmentPair& pair, Chunk& chunk) const;
   Vec3 remembered_slip(const SegmentPair& pair) const;

@@ -1,6 +1,7 @@
 // Which blocks the Hessian has.
 #include <algorithm>
 
+#include "base/parallel.hpp"
 #include "mechanics/assembly_sums.hpp"
 
 namespace loopwright {
@@ -52,45 +53,54 @@ void Assembly::listed_pattern(BlockMatrix& matrix) const {
     partner[static_cast<std::size_t>(fill[static_cast<std::size_t>(p.b)]++)] = p.a;
   }
 
-  std::vector<std::int32_t> last_row(segments, -1), near;
-  std::vector<std::int32_t>& columns = matrix.column;
-  columns.clear();
-  columns.reserve(7 * static_cast<std::size_t>(model_.nodes) + 10 * active_.size());  // about what comes
-  for (const YarnModel::Yarn& yarn : model_.yarns)
-    for (int i = 0; i < yarn.nodes; ++i) {
-      const std::int32_t row = yarn.first_node + i;
-      near.clear();
-      const auto add_segment = [&](std::int32_t e) {
-        if (last_row[static_cast<std::size_t>(e)] == row) return;
-        last_row[static_cast<std::size_t>(e)] = row;
-        near.push_back(e);
-      };
-      for (int back = 3; back >= 0; --back) {
-        int e = i - back;
-        if (yarn.periodic) e = (e + yarn.segments) % yarn.segments;
-        if (e < 0 || e >= yarn.segments) continue;
-        e += yarn.first_segment;
-        add_segment(e);
-        for (auto k = start[static_cast<std::size_t>(e)]; k < start[static_cast<std::size_t>(e) + 1]; ++k)
-          add_segment(partner[static_cast<std::size_t>(k)]);
+  std::vector<std::vector<std::int32_t>> parts(static_cast<std::size_t>(chunk_count()));
+  parallel_chunks(chunk_count(), [&](int c) {
+    std::vector<std::int32_t>& columns = parts[static_cast<std::size_t>(c)];
+    std::vector<std::int32_t> last_row(segments, -1), near;
+    const std::int32_t low = first_of_chunk(c), high = first_of_chunk(c + 1);
+    columns.reserve(7 * static_cast<std::size_t>(high - low) + 10 * active_.size() / parts.size());  // about
+    for (const YarnModel::Yarn& yarn : model_.yarns)
+      for (int row = std::max(yarn.first_node, low); row < std::min(yarn.first_node + yarn.nodes, high);
+           ++row) {
+        near.clear();
+        const auto add_segment = [&](std::int32_t e) {
+          if (last_row[static_cast<std::size_t>(e)] == row) return;
+          last_row[static_cast<std::size_t>(e)] = row;
+          near.push_back(e);
+        };
+        for (int back = 3; back >= 0; --back) {
+          int e = row - yarn.first_node - back;
+          if (yarn.periodic) e = (e + yarn.segments) % yarn.segments;
+          if (e < 0 || e >= yarn.segments) continue;
+          e += yarn.first_segment;
+          add_segment(e);
+          for (auto k = start[static_cast<std::size_t>(e)]; k < start[static_cast<std::size_t>(e) + 1]; ++k)
+            add_segment(partner[static_cast<std::size_t>(k)]);
+        }
+        std::sort(near.begin(), near.end());
+        const auto begin = static_cast<std::ptrdiff_t>(columns.size());
+        bool in_order = true;  // not where an endless yarn closes
+        for (const std::int32_t e : near) {
+          const FourNodes n = nodes_of(e);
+          in_order = in_order && UpperBlocks::is_run(n);
+          for (const std::int32_t j : n)
+            if (!in_order || static_cast<std::ptrdiff_t>(columns.size()) == begin || j > columns.back())
+              columns.push_back(j);
+        }
+        if (!in_order) {
+          std::sort(columns.begin() + begin, columns.end());
+          columns.erase(std::unique(columns.begin() + begin, columns.end()), columns.end());
+        }
+        matrix.row_start[static_cast<std::size_t>(row) + 1] =
+            static_cast<std::int32_t>(static_cast<std::ptrdiff_t>(columns.size()) - begin);
       }
-      std::sort(near.begin(), near.end());
-      const auto begin = static_cast<std::ptrdiff_t>(columns.size());
-      bool in_order = true;  // not where an endless yarn closes
-      for (const std::int32_t e : near) {
-        const FourNodes n = nodes_of(e);
-        in_order = in_order && UpperBlocks::is_run(n);
-        for (const std::int32_t j : n)
-          if (!in_order || static_cast<std::ptrdiff_t>(columns.size()) == begin || j > columns.back())
-            columns.push_back(j);
-      }
-      if (!in_order) {
-        std::sort(columns.begin() + begin, columns.end());
-        columns.erase(std::unique(columns.begin() + begin, columns.end()), columns.end());
-      }
-      matrix.row_start[static_cast<std::size_t>(row) + 1] = static_cast<std::int32_t>(columns.size());
-    }
-  if (columns.capacity() > columns.size() + columns.size() / 4) columns.shrink_to_fit();
+  });
+  for (std::size_t i = 0; i + 1 < matrix.row_start.size(); ++i)
+    matrix.row_start[i + 1] += matrix.row_start[i];
+  matrix.column.clear();
+  matrix.column.reserve(static_cast<std::size_t>(matrix.row_start.back()));
+  for (const std::vector<std::int32_t>& part : parts)
+    matrix.column.insert(matrix.column.end(), part.begin(), part.end());
 }
 
 void Assembly::build_pattern(BlockMatrix& matrix) {

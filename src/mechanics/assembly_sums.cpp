@@ -107,13 +107,13 @@ void Assembly::add_segments(Chunk& chunk) const {
   SegmentLanesTerm term;
   const auto flush = [&] {
     if (count == 0) return;
-    gather(group.data(), count, chunk.matrix != nullptr, in);
-    if (chunk.matrix)
+    gather(group.data(), count, chunk.gradient != nullptr, in);
+    if (chunk.gradient)
       evaluate(in, term);
     else
       energies(in, term.stretch, term.bend);
     for (std::size_t lane = 0; lane < count; ++lane) {
-      if (chunk.matrix) scatter(term, lane, group[lane], chunk);
+      if (chunk.gradient) scatter(term, lane, group[lane], chunk);
       if (!chunk.owns(nodes_of(group[lane])[0])) continue;
       chunk.energy.stretch += term.stretch[lane];
       chunk.energy.bend += term.bend[lane];
@@ -123,7 +123,7 @@ void Assembly::add_segments(Chunk& chunk) const {
     count = 0;
   };
   for (int e = 0; e < model_.segments; ++e) {
-    if (!(chunk.matrix ? touches(chunk, e) : chunk.owns(nodes_of(e)[0]))) continue;
+    if (!(chunk.gradient ? touches(chunk, e) : chunk.owns(nodes_of(e)[0]))) continue;
     group[count++] = e;
     if (chunk.matrix) UpperBlocks(*chunk.matrix, diagonal_, chunk.low, chunk.high).fetch(nodes_of(e));
     if (count == lanes) flush();
@@ -136,13 +136,17 @@ void Assembly::add_segments(Chunk& chunk) const {
 LOOPWRIGHT_WIDE void Assembly::scatter(const SegmentLanesTerm& term, std::size_t lane, int segment,
                                        Chunk& chunk) const {
   const FourNodes n = nodes_of(segment);
-  const UpperBlocks upper(*chunk.matrix, diagonal_, chunk.low, chunk.high);
+  const bool whole = chunk.owns(n[0]);
   for (std::size_t k = 0; k < 4; ++k) {
     if (!chunk.owns(n[k])) continue;
     const auto& g = term.gradient[k];
     add(chunk.gradient->u[static_cast<std::size_t>(n[k])], g[0][lane], g[1][lane], g[2][lane]);
-    add_to(chunk.matrix->border[static_cast<std::size_t>(n[k])], term.border[lane][k]);
   }
+  for (std::size_t k = 0; whole && k < 3; ++k) chunk.measures[k] += term.measures[k][lane];
+  if (!chunk.matrix) return;
+  for (std::size_t k = 0; k < 4; ++k)
+    if (chunk.owns(n[k])) add_to(chunk.matrix->border[static_cast<std::size_t>(n[k])], term.border[lane][k]);
+  const UpperBlocks upper(*chunk.matrix, diagonal_, chunk.low, chunk.high);
   upper.each_own(n, [&](std::size_t k, std::size_t l, Block& to, bool transposed) {
     const Block& block = term.blocks[lane][block_of_points[k][l]];
     if (!transposed)
@@ -150,9 +154,7 @@ LOOPWRIGHT_WIDE void Assembly::scatter(const SegmentLanesTerm& term, std::size_t
     else
       for (std::size_t c = 0; c < 9; ++c) to[c] += block[3 * (c % 3) + c / 3];
   });
-  if (!chunk.owns(n[0])) return;
-  for (std::size_t k = 0; k < 3; ++k) chunk.measures[k] += term.measures[k][lane];
-  for (std::size_t c = 0; c < 9; ++c) chunk.corner[c] += term.corner[c][lane];
+  for (std::size_t c = 0; whole && c < 9; ++c) chunk.corner[c] += term.corner[c][lane];
 }
 
 void Assembly::add_plates(int segment, Chunk& chunk) const {
@@ -166,10 +168,11 @@ void Assembly::add_plates(int segment, Chunk& chunk) const {
   if (pushed.energy == 0) return;
   const FourNodes n = nodes_of(segment);
   if (chunk.owns(n[0])) chunk.energy.plates += pushed.energy;
-  if (!chunk.matrix) return;
+  if (!chunk.gradient) return;
   // Along z alone, which no measure changes.
   for (std::size_t k = 0; k < 4; ++k)
     if (chunk.owns(n[k])) chunk.gradient->u[static_cast<std::size_t>(n[k])].z += pushed.gradient[3 * k + 2];
+  if (!chunk.matrix) return;
   UpperBlocks(*chunk.matrix, diagonal_, chunk.low, chunk.high)
       .each_own(n, [&](std::size_t k, std::size_t l, Block& to, bool) {
         to[8] += pushed.hessian[3 * k + 2][3 * l + 2];
@@ -222,26 +225,28 @@ bool Assembly::contact_input(const SegmentPair& pair, const Vec3& image, double 
 void Assembly::add_contacts(Chunk& chunk) {
   ContactPairInput in;
   ContactTerm term;
-  const std::size_t candidates = chunk.matrix ? active_.size() : pairs_.size();
+  const std::size_t candidates = chunk.gradient ? active_.size() : pairs_.size();
   for (std::size_t k = 0; k < candidates; ++k) {
-    const SegmentPair& pair = pairs_[chunk.matrix ? static_cast<std::size_t>(active_[k]) : k];
+    const SegmentPair& pair = pairs_[chunk.gradient ? static_cast<std::size_t>(active_[k]) : k];
     const bool whole = chunk.owns(nodes_of(pair.a)[0]);
-    if (!whole && !(chunk.matrix && (touches(chunk, pair.a) || touches(chunk, pair.b)))) continue;
+    if (!whole && !(chunk.gradient && (touches(chunk, pair.a) || touches(chunk, pair.b)))) continue;
     const double scale = law_scale(pair.a, pair.b), reach = model_.contact.outer * scale;
-    if (!chunk.matrix && !may_touch(pair, reach, *chunk.state)) continue;
+    if (!chunk.gradient && !may_touch(pair, reach, *chunk.state)) continue;
     if (!contact_input(pair, chunk.state->lattice(pair.m, pair.n), reach, in)) continue;
     const ContactLaw law = scale == 1 ? model_.contact : model_.contact.scaled(scale);
-    if (!chunk.matrix) {
+    if (!chunk.gradient) {
       const double energy = contact_energy(in, law);
       chunk.energy.contact += energy;
       if (chunk.of_segments) (*chunk.of_segments)[static_cast<std::size_t>(pair.a)] += energy;
       continue;
     }
-    const UpperBlocks upper(*chunk.matrix, diagonal_, chunk.low, chunk.high);
-    const FourNodes na = nodes_of(pair.a), nb = nodes_of(pair.b);
-    upper.fetch(na);
-    upper.fetch(nb);
-    upper.fetch_between(na, nb);
+    if (chunk.matrix) {
+      const UpperBlocks upper(*chunk.matrix, diagonal_, chunk.low, chunk.high);
+      const FourNodes na = nodes_of(pair.a), nb = nodes_of(pair.b);
+      upper.fetch(na);
+      upper.fetch(nb);
+      upper.fetch_between(na, nb);
+    }
     evaluate(in, law, model_.weights, term);
     if (!term.active) continue;
     if (whole) chunk.energy.contact += term.energy;
@@ -297,6 +302,21 @@ LOOPWRIGHT_WIDE void Assembly::scatter(const ContactTerm& term, const SegmentPai
     frac_a[k] = fraction_[fa + k];
     frac_b[k] = {fraction_[fb + k][0] + pair.m, fraction_[fb + k][1] + pair.n};
   }
+  const bool whole = chunk.owns(na[0]);
+  const auto add_force = [&](std::int32_t node, const std::array<Lanes, 3>& gradient, std::size_t k,
+                             const Fraction& fraction) {
+    const Vec3 force{gradient[0][k], gradient[1][k], gradient[2][k]};
+    if (chunk.owns(node)) chunk.gradient->u[static_cast<std::size_t>(node)] += force;
+    if (!whole) return;
+    chunk.measures[0] += fraction[0] * force.x;
+    chunk.measures[1] += fraction[1] * force.y;
+    chunk.measures[2] += fraction[1] * force.x;
+  };
+  for (std::size_t k = 0; k < 4; ++k) {
+    add_force(na[k], term.a.gradient, k, frac_a[k]);
+    add_force(nb[k], term.b.gradient, k, frac_b[k]);
+  }
+  if (!chunk.matrix) return;
   const UpperBlocks upper(*chunk.matrix, diagonal_, chunk.low, chunk.high);
   const std::array<FourBlocks, 4> of_a = four_blocks(term.a.hessian), of_b = four_blocks(term.b.hessian),
                                   between = four_blocks(term.between);
@@ -310,23 +330,13 @@ LOOPWRIGHT_WIDE void Assembly::scatter(const ContactTerm& term, const SegmentPai
 
   ContactBorder columns;
   border(term, frac_a, frac_b, columns);
-  const bool whole = chunk.owns(na[0]);
-  const auto add_row = [&](std::int32_t node, const std::array<Lanes, 3>& gradient, std::size_t k,
-                           const Fraction& fraction, const Block& column) {
-    const Vec3 force{gradient[0][k], gradient[1][k], gradient[2][k]};
-    if (chunk.owns(node)) {
-      chunk.gradient->u[static_cast<std::size_t>(node)] += force;
-      add_to(chunk.matrix->border[static_cast<std::size_t>(node)], column);
-    }
-    if (!whole) return;
-    chunk.measures[0] += fraction[0] * force.x;
-    chunk.measures[1] += fraction[1] * force.y;
-    chunk.measures[2] += fraction[1] * force.x;
-    add_measures_transposed(fraction, column, chunk.corner);
+  const auto add_column = [&](std::int32_t node, const Fraction& fraction, const Block& column) {
+    if (chunk.owns(node)) add_to(chunk.matrix->border[static_cast<std::size_t>(node)], column);
+    if (whole) add_measures_transposed(fraction, column, chunk.corner);
   };
   for (std::size_t k = 0; k < 4; ++k) {
-    add_row(na[k], term.a.gradient, k, frac_a[k], columns.a[k]);
-    add_row(nb[k], term.b.gradient, k, frac_b[k], columns.b[k]);
+    add_column(na[k], frac_a[k], columns.a[k]);
+    add_column(nb[k], frac_b[k], columns.b[k]);
   }
 }
 

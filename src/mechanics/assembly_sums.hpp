@@ -13,9 +13,9 @@ using Fraction = std::array<double, 2>;
 struct Assembly::Chunk {
   std::int32_t low = 0, high = 0;
   const YarnState* state = nullptr;
-  Unknowns* gradient = nullptr;                // both or none
-  BlockMatrix* matrix = nullptr;               // its upper triangle alone is added to
-  std::vector<double>* of_segments = nullptr;  // without a matrix: wanted there
+  Unknowns* gradient = nullptr;
+  BlockMatrix* matrix = nullptr;               // with a gradient alone; its upper triangle is added to
+  std::vector<double>* of_segments = nullptr;  // without a gradient: wanted there
   EnergyParts energy;
   Measures measures{};
   Block corner{};

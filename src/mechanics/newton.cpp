@@ -57,23 +57,21 @@ NewtonResult newton(const YarnModel& model, YarnState& state, const NewtonOption
 
   for (result.iterations = 0;; ++result.iterations) {
     const double range = outer + loose;
-    const auto evaluate = [&] {
-      assembly.update_pairs(state, range);
-      result.energy = assembly.hessian(state, gradient, hessian);
-      result.measure_forces = assembly.measure_forces();
-      result.residual = largest_force(gradient);
-      result.measure_residual = largest_measure_force(gradient);
-      result.converged = result.residual < options.tolerance && result.measure_residual < options.tolerance;
-    };
-    evaluate();
-    if (search.is_large() && !result.converged && result.iterations < options.most_iterations) {
+    assembly.update_pairs(state, range);
+    if (search.is_large() && result.iterations < options.most_iterations) {
+      assembly.gradient(state, gradient);
       SpotsReport settled = settle_hot_spots(model, gradient, options.tolerance, state, assembly.history());
       result.spot_iterations += settled.iterations;
       if (settled.spots > 0) {
         assembly.set_history(std::move(settled.history));
-        evaluate();
+        assembly.update_pairs(state, range);
       }
     }
+    result.energy = assembly.hessian(state, gradient, hessian);
+    result.measure_forces = assembly.measure_forces();
+    result.residual = largest_force(gradient);
+    result.measure_residual = largest_measure_force(gradient);
+    result.converged = result.residual < options.tolerance && result.measure_residual < options.tolerance;
     if (options.on_iteration && !options.on_iteration(result.iterations, result.residual))
       result.stopped = true;
     if (result.converged || result.stopped || result.iterations >= options.most_iterations) break;

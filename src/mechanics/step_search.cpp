@@ -10,6 +10,7 @@ constexpr double gap_share = 0.7;         // of the gap of two pieces of yarn th
 constexpr double enough_decrease = 1e-4;  // Armijo's constant
 constexpr int most_cuts = 40;
 constexpr int many_nodes = 8000;
+constexpr int very_many_nodes = 400000;  // some two gigabytes: what is given back must be fetched anew
 // A large piece's step that would be cut to less than this by some yarn is solved for again, so often.
 constexpr double enough_scale = 0.5;
 constexpr int most_again = 3;
@@ -17,6 +18,7 @@ constexpr int most_again = 3;
 }  // namespace
 
 bool StepSearch::is_large() const { return model_.nodes > many_nodes; }
+bool StepSearch::counts_memory() const { return model_.nodes > very_many_nodes; }
 
 bool StepSearch::lowers(const StepPlace& at, const TakenStep& taken, double scale, double energy) const {
   return energy <= at.energy + enough_decrease * scale * taken.slope + 1e-13 * std::abs(at.energy);
@@ -37,7 +39,7 @@ bool StepSearch::solve(const StepPlace& at, BlockMatrix& hessian, double& shift,
       local_.raise(nodes, at_shift);
       weigh(at_shift);
     };
-  if (is_large()) assembly_.drop_places();
+  if (counts_memory()) assembly_.drop_places();
   weigh(shift);
   hessian.measure_metric = {1, 1, 1};
   local_.take_raised();
@@ -69,7 +71,7 @@ bool StepSearch::take(const StepPlace& at, BlockMatrix& hessian, double& shift, 
   taken = {};
   of_segments_here_.clear();
   if (!solve(at, hessian, shift, taken)) return false;
-  if (is_large()) hessian = BlockMatrix{};  // much of what is held, and not needed until the next step
+  if (counts_memory()) hessian = BlockMatrix{};  // much of what is held, and not needed until the next step
   local_.fade();
   double scale = taken.safe.scale;
   for (int cuts = 0; taken.scale == 0 && cuts < most_cuts; ++cuts, scale *= 0.5) {

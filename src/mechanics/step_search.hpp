@@ -28,14 +28,15 @@ class StepSearch {
   StepSearch(const YarnModel& model, Assembly& assembly)
       : model_(model), assembly_(assembly), solver_(model), local_(model) {}
 
-  // False if no step could be solved for. The Hessian gets its metric and, in a large piece, is given back.
-  // `shift` is raised where that is needed to make it positive definite.
+  // False if no step could be solved for. The Hessian gets its metric and, in a very large piece, is given
+  // back. `shift` is raised where that is needed to make it positive definite.
   bool take(const StepPlace& at, BlockMatrix& hessian, double& shift, TakenStep& taken);
 
   const StepSolver& solver() const { return solver_; }
-  bool is_large() const;  // so that memory and costly steps count
+  bool is_large() const;  // so that costly steps count
 
  private:
+  bool counts_memory() const;
   bool shifts_locally() const { return is_large() && !model_.periodic; }
   // What it finds to lower the energy is taken whole.
   bool solve(const StepPlace& at, BlockMatrix& hessian, double& shift, TakenStep& taken);

@@ -6,10 +6,13 @@
 #include <cstring>
 #include <tuple>
 
+#include "base/parallel.hpp"
 #include "mechanics/contact/pair_input.hpp"
 
 namespace loopwright {
 namespace {
+
+constexpr int segments_per_chunk = 4096;
 
 struct ImagedSegment {
   std::int32_t segment;
@@ -277,8 +280,8 @@ void find_segment_pairs(const YarnModel& model, const YarnState& state, const Sa
                                       1,
                                   0);
   std::vector<std::size_t> where(all.size());
-  std::array<int, 3> at;
   for (std::size_t s = 0; s < all.size(); ++s) {
+    std::array<int, 3> at;
     cell_of(all[s].box, at);
     where[s] = cell_index(at[0], at[1], at[2]);
     ++start[where[s] + 1];
@@ -293,10 +296,10 @@ void find_segment_pairs(const YarnModel& model, const YarnState& state, const Sa
   for (std::size_t k = 0; k < sorted.size(); ++k) boxes.set(k, all[static_cast<std::size_t>(sorted[k])].box);
 
   const double range2 = range * range;
-  std::vector<std::int32_t> found(all.size() + lanes);
-  for (int a = 0; a < model.segments; ++a) {
+  const auto pairs_of = [&](int a, std::vector<std::int32_t>& found, std::vector<SegmentPair>& to) {
     const SampleBox& box = all[static_cast<std::size_t>(a)].box;
-    const std::size_t first_pair = pairs.size();
+    const std::size_t first_pair = to.size();
+    std::array<int, 3> at;
     cell_of(box, at);
     const int i0 = std::max(at[0] - 1, 0), i1 = std::min(at[0] + 1, size[0] - 1);
     for (int k = std::max(at[2] - 1, 0); k <= std::min(at[2] + 1, size[2] - 1); ++k)
@@ -313,16 +316,30 @@ void find_segment_pairs(const YarnModel& model, const YarnState& state, const Sa
           if (!may_touch(model, a, other, pair)) continue;
           pair.distance2 =
               smallest_distance2(pair_input(model, places, pair, state.lattice(pair.m, pair.n)), range2);
-          if (pair.distance2 < range2) pairs.push_back(pair);
+          if (pair.distance2 < range2) to.push_back(pair);
         }
       }
-    std::sort(pairs.begin() + static_cast<std::ptrdiff_t>(first_pair), pairs.end(),
+    std::sort(to.begin() + static_cast<std::ptrdiff_t>(first_pair), to.end(),
               [](const SegmentPair& p, const SegmentPair& q) {
                 return std::tie(p.b, p.m, p.n) < std::tie(q.b, q.m, q.n);
               });
-  }
+  };
+  const int chunks = (model.segments + segments_per_chunk - 1) / segments_per_chunk;
+  std::vector<std::vector<SegmentPair>> parts(static_cast<std::size_t>(chunks));
+  parallel_chunks(chunks, [&](int c) {
+    std::vector<std::int32_t> found(all.size() + lanes);
+    const int end = std::min(model.segments, (c + 1) * segments_per_chunk);
+    for (int a = c * segments_per_chunk; a < end; ++a) pairs_of(a, found, parts[static_cast<std::size_t>(c)]);
+  });
+  std::size_t total = 0;
+  for (const auto& part : parts) total += part.size();
   // The list outlives the search: what a large piece's has grown too long by is given back.
-  if (pairs.capacity() > pairs.size() + pairs.size() / 4) pairs.shrink_to_fit();
+  if (pairs.capacity() > total + total / 4) std::vector<SegmentPair>().swap(pairs);
+  pairs.reserve(total);
+  for (auto& part : parts) {
+    pairs.insert(pairs.end(), part.begin(), part.end());
+    std::vector<SegmentPair>().swap(part);
+  }
 }
 
 std::vector<SegmentPair> pairs_within(const YarnModel& model, const YarnState& state, double reach,

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <stdexcept>
 
+#include "mechanics/linear/lower_columns.hpp"
 #ifdef LOOPWRIGHT_HAS_CHOLMOD
 #include "mechanics/linear/supernodal_single.hpp"
 #else
@@ -26,8 +27,6 @@ extern "C" int omp_get_max_active_levels() __attribute__((weak));
 namespace loopwright {
 namespace {
 
-constexpr int small_order = 3000;  // unknowns
-
 #ifdef LOOPWRIGHT_HAS_CHOLMOD
 // While it lives, OpenMP starts no threads for the thread that made it.
 class OneOpenMpThread {
@@ -45,44 +44,6 @@ class OneOpenMpThread {
   int levels_ = omp_get_max_active_levels ? omp_get_max_active_levels() : 1;
 };
 #endif
-
-// Lower triangle in compressed columns = upper triangle by rows of the symmetric matrix.
-struct LowerColumns {
-  std::vector<int> start, row;
-  std::vector<double> value;
-};
-
-void lower_pattern(const BlockMatrix& m, LowerColumns& out) {
-  const int n = 3 * m.rows();
-  out.start.assign(static_cast<std::size_t>(n) + 1, 0);
-  out.row.clear();
-  for (int i = 0; i < m.rows(); ++i)
-    for (int r = 0; r < 3; ++r) {
-      const auto column = static_cast<std::size_t>(3 * i + r);
-      for (auto k = static_cast<std::size_t>(m.row_start[static_cast<std::size_t>(i)]);
-           k < static_cast<std::size_t>(m.row_start[static_cast<std::size_t>(i) + 1]); ++k) {
-        const int j = m.column[k];
-        if (j < i) continue;
-        for (int c = j == i ? r : 0; c < 3; ++c) out.row.push_back(3 * j + c);
-      }
-      out.start[column + 1] = static_cast<int>(out.row.size());
-    }
-  out.value.resize(out.row.size());
-}
-
-void lower_values(const BlockMatrix& m, double shift, LowerColumns& out) {
-  std::size_t at = 0;
-  for (int i = 0; i < m.rows(); ++i)
-    for (std::size_t r = 0; r < 3; ++r)
-      for (auto k = static_cast<std::size_t>(m.row_start[static_cast<std::size_t>(i)]);
-           k < static_cast<std::size_t>(m.row_start[static_cast<std::size_t>(i) + 1]); ++k) {
-        const int j = m.column[k];
-        if (j < i) continue;
-        const Block& b = m.block[k];
-        for (std::size_t c = j == i ? r : 0; c < 3; ++c)
-          out.value[at++] = b[3 * r + c] + (c == r ? shift * m.metric[k] : 0);
-      }
-}
 
 }  // namespace
 
@@ -128,16 +89,18 @@ struct Cholesky::Factor {
   SupernodalSingle single;  // in use after compact()
   cholmod_common common{};
   cholmod_factor* factor = nullptr;
-  std::vector<int> order;
+  std::vector<int> order;  // [place in the factor] control point
   double best_entries = 0;
+  std::vector<double> right;  // in that order
   Factor() {
     if (openblas_set_num_threads) openblas_set_num_threads(1);
     cholmod_start(&common);
     common.print = 0;
     common.supernodal = CHOLMOD_SUPERNODAL;
     common.nmethods = 1;
-    common.method[0].ordering = CHOLMOD_AMD;
-    common.postorder = 1;
+    // What it is given is in order already: it then factors that as it lies instead of turning it over twice.
+    common.method[0].ordering = CHOLMOD_NATURAL;
+    common.postorder = 0;
     common.error_handler = nullptr;
   }
   ~Factor() {
@@ -182,21 +145,26 @@ struct Cholesky::Factor {
     graph.xtype = CHOLMOD_PATTERN;
     graph.dtype = CHOLMOD_DOUBLE;
     graph.sorted = graph.packed = 1;
-    std::vector<int> node_order(static_cast<std::size_t>(m.rows()));
+    const auto rows = static_cast<std::size_t>(m.rows());
+    std::vector<int> first(rows);
     // METIS draws from the C library's one random generator, which it seeds anew at every call: one call at a
     // time, or the order (and the last bits of the solution) depends on what other threads factor meanwhile.
     static std::mutex metis;
     const auto nested_dissection = [&] {
       const std::lock_guard lock(metis);
-      return cholmod_metis(&graph, nullptr, 0, 1, node_order.data(), &common) != 0;
+      return cholmod_metis(&graph, nullptr, 0, 1, first.data(), &common) != 0;
     };
-    if (!(m.rows() > 2000 && nested_dissection()) &&
-        !cholmod_amd(&graph, nullptr, 0, node_order.data(), &common))
+    const bool nested = m.rows() > 2000 && nested_dissection();
+    if (!nested && !cholmod_amd(&graph, nullptr, 0, first.data(), &common))
       throw std::runtime_error("ordering the stiffness matrix failed (out of memory?)");
-    order.clear();
-    order.reserve(3 * node_order.size());
-    for (const int i : node_order)
-      for (int d = 0; d < 3; ++d) order.push_back(3 * i + d);
+    // Each tree of eliminations in one piece, so that its columns can be taken together.
+    std::vector<int> parent(rows), post(rows), count(rows), work(2 * rows);
+    if (!cholmod_analyze_ordering(&graph, nested ? CHOLMOD_METIS : CHOLMOD_AMD, first.data(), nullptr, 0,
+                                  parent.data(), post.data(), count.data(), work.data(), work.data() + rows,
+                                  &common))
+      throw std::runtime_error("analysing the stiffness matrix failed (out of memory?)");
+    order.resize(rows);
+    for (std::size_t i = 0; i < rows; ++i) order[i] = first[static_cast<std::size_t>(post[i])];
     best_entries = 0;
   }
   void clear() {
@@ -210,22 +178,20 @@ struct Cholesky::Factor {
   }
   void compact() {
     if (!factor) return;
-    single = SupernodalSingle(*factor);
+    single = SupernodalSingle(*factor, order);
     cholmod_free_factor(&factor, &common);
     cholmod_free_work(&common);
     lower = {};
     forget_pattern();
-    // Found again sooner than kept, for the many small factors of a large piece.
-    if (unknowns < small_order) std::vector<int>().swap(order);
   }
   void analyse(const BlockMatrix& m) {
     for (int attempt = 0; attempt < 2; ++attempt) {
-      const bool fresh = order.size() != static_cast<std::size_t>(unknowns) || attempt == 1;
+      const bool fresh = order.size() != static_cast<std::size_t>(m.rows()) || attempt == 1;
       if (fresh) order_nodes(m);
+      lower.set_pattern(m, order);
       cholmod_free_factor(&factor, &common);
-      common.method[0].ordering = CHOLMOD_GIVEN;
       cholmod_sparse a = view();
-      factor = cholmod_analyze_p(&a, order.data(), nullptr, 0, &common);
+      factor = cholmod_analyze(&a, &common);
       if (!factor) throw std::runtime_error("analysing the stiffness matrix failed (out of memory?)");
       if (best_entries == 0) best_entries = common.lnz;
       if (fresh || common.lnz < 1.25 * best_entries) return;
@@ -241,16 +207,19 @@ struct Cholesky::Factor {
   }
   void solve(const double* b, double* x) {
     if (!factor) return single.solve(b, x);
+    right.resize(static_cast<std::size_t>(unknowns));
+    for (std::size_t i = 0; i < order.size(); ++i) std::copy_n(b + 3 * order[i], 3, &right[3 * i]);
     cholmod_dense rhs{};
     rhs.nrow = rhs.d = rhs.nzmax = static_cast<std::size_t>(unknowns);
     rhs.ncol = 1;
-    rhs.x = const_cast<double*>(b);
+    rhs.x = right.data();
     rhs.xtype = CHOLMOD_REAL;
     rhs.dtype = CHOLMOD_DOUBLE;
     const OneOpenMpThread no_others;
     cholmod_dense* result = cholmod_solve(CHOLMOD_A, factor, &rhs, &common);
     if (!result) throw std::bad_alloc();
-    std::copy_n(static_cast<const double*>(result->x), unknowns, x);
+    const double* in_order = static_cast<const double*>(result->x);
+    for (std::size_t i = 0; i < order.size(); ++i) std::copy_n(in_order + 3 * i, 3, x + 3 * order[i]);
     cholmod_free_dense(&result, &common);
   }
   double entries() const {
@@ -264,7 +233,10 @@ struct Cholesky::Factor {
   }
   void compact() {}
   void clear() {}
-  void analyse(const BlockMatrix&) { factorisation.analyzePattern(view()); }
+  void analyse(const BlockMatrix& m) {
+    lower.set_pattern(m, {});
+    factorisation.analyzePattern(view());
+  }
   bool numeric() {
     factorisation.factorize(view());
     return factorisation.info() == Eigen::Success;
@@ -292,13 +264,12 @@ bool Cholesky::factor(const BlockMatrix& m, double shift) {
   Factor& f = *factor_;
   const bool known = f.row_start == m.row_start && f.column == m.column;
   f.unknowns = 3 * m.rows();
-  if (!known) lower_pattern(m, f.lower);
-  lower_values(m, shift, f.lower);
   if (!known) {
     f.analyse(m);
     f.row_start = m.row_start;
     f.column = m.column;
   }
+  f.lower.set_values(m, shift);
   if (!f.numeric()) return false;
 
   // What has no border keeps none.

@@ -21,6 +21,7 @@ constexpr int known_iterations = 2;
 constexpr double ridge = 1e-7;  // of the plate's diagonal: splines that carry little all but repeat others
 
 constexpr std::size_t nodes_per_chunk = 4096;
+constexpr std::size_t very_many_points = 400000;  // so that memory counts
 
 std::size_t place(std::int64_t i) { return static_cast<std::size_t>(i); }
 
@@ -155,7 +156,7 @@ bool Schwarz::factor(const BlockMatrix& matrix, double shift) {
   for (const auto& patch : patches_) patch->factor.clear(), patch->definite = true;
 #ifdef __GLIBC__
   // The heap keeps what thousands of small factors leave behind; the coarse factors are too large for it.
-  if (!answers_.empty()) malloc_trim(0);
+  if (!answers_.empty() && control_points_ > very_many_points) malloc_trim(0);
 #endif
   coarse_ready_ = true;
   for (const auto& level : levels_) {
@@ -237,8 +238,16 @@ bool Schwarz::answer_measures(const BlockMatrix& matrix, double shift) {
 }
 
 void Schwarz::solve_points(const Unknowns& b, Unknowns& x) {
-  parallel_chunks(static_cast<int>(patches_.size()), [&](int p) {
-    Patch& patch = *patches_[place(p)];
+  // The coarse spaces first: each takes as long as many patches, which go on beside it.
+  const int coarse = static_cast<int>(levels_.size());
+  parallel_chunks(coarse + static_cast<int>(patches_.size()), [&](int task) {
+    if (task < coarse) {
+      Level& level = *levels_[place(task)];
+      level.space->restricted(b.u, level.right.u);
+      level.factor.solve(level.right, level.result);
+      return;
+    }
+    Patch& patch = *patches_[place(task - coarse)];
     Unknowns right, result;
     right.u.resize(patch.nodes.size());
     for (std::size_t k = 0; k < patch.nodes.size(); ++k) right.u[k] = b.u[place(patch.nodes[k])];
@@ -262,11 +271,7 @@ void Schwarz::solve_points(const Unknowns& b, Unknowns& x) {
       x.u[i] = sum;
     }
   });
-  for (const auto& level : levels_) {
-    level->space->restricted(b.u, level->right.u);
-    level->factor.solve(level->right, level->result);
-    level->space->add_prolonged(level->result.u, x.u);
-  }
+  for (const auto& level : levels_) level->space->add_prolonged(level->result.u, x.u);
 }
 
 void Schwarz::solve(const Unknowns& b, Unknowns& x) {

@@ -115,5 +115,7 @@ class UpperBlocks {
 
 // Copies the upper triangle's blocks, transposed, to the lower.
 void mirror_upper(BlockMatrix& matrix, const std::vector<std::int32_t>& diagonal);
+// The same for the metric.
+void mirror_upper_metric(BlockMatrix& matrix, const std::vector<std::int32_t>& diagonal);
 
 }  // namespace loopwright

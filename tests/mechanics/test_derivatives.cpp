@@ -407,6 +407,10 @@ TEST(AssemblyDerivatives, FrictionCountedFromTheLastHessian) {
     assembly.update_pairs(next, pair_range);
     const EnergyParts parts = assembly.hessian(next, gradient, hessian);
     EXPECT_EQ(parts.friction, 0);
+    Unknowns alone;  // without the Hessian: the same forces, to the last bit, those of friction among them
+    EXPECT_EQ(assembly.gradient(next, alone).total(), parts.total());
+    EXPECT_EQ(alone.u, gradient.u);
+    EXPECT_EQ(alone.g, gradient.g);
     multiply(hessian, line.direction, product);
     const auto energy_at = [&](double h) {
       return assembly.energy(assembly.moved(next, line.direction, h)).total();

@@ -58,7 +58,7 @@ NewtonResult newton(const YarnModel& model, YarnState& state, const NewtonOption
   for (result.iterations = 0;; ++result.iterations) {
     const double range = outer + loose;
     assembly.update_pairs(state, range);
-    if (search.is_large() && result.iterations < options.most_iterations) {
+    if (search.is_large() && !model.periodic && result.iterations < options.most_iterations) {
       assembly.gradient(state, gradient);
       SpotsReport settled = settle_hot_spots(model, gradient, options.tolerance, state, assembly.history());
       result.spot_iterations += settled.iterations;

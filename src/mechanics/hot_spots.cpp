@@ -150,14 +150,16 @@ bool SpotSettler::settle(std::int32_t hottest, SpotsReport& report) {
 
 }  // namespace
 
+bool may_have_hot_spots(const YarnModel& model) {
+  return !model.periodic &&
+         std::none_of(model.yarns.begin(), model.yarns.end(),
+                      [](const YarnModel::Yarn& yarn) { return yarn.twist_stiffness > 0 || yarn.periodic; });
+}
+
 SpotsReport settle_hot_spots(const YarnModel& model, const Unknowns& gradient, double tolerance,
                              YarnState& state, const ContactHistory& history) {
   SpotsReport report;
-  const bool twisted = std::any_of(model.yarns.begin(), model.yarns.end(),
-                                   [](const YarnModel::Yarn& yarn) { return yarn.twist_stiffness > 0; });
-  const bool closed = std::any_of(model.yarns.begin(), model.yarns.end(),
-                                  [](const YarnModel::Yarn& yarn) { return yarn.periodic; });
-  if (model.periodic || twisted || closed) return report;
+  if (!may_have_hot_spots(model)) return report;
   double usual = 0;
   const std::vector<std::int32_t> hot = hot_nodes(model, gradient, tolerance, usual);
   if (hot.empty()) return report;

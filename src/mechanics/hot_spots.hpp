@@ -14,10 +14,12 @@ struct SpotsReport {
   ContactHistory history;  // friction's, of the piece, after them; of no spot: not filled
 };
 
+// Not in periodic cells, where yarn resists twist or closes on itself: a spot cannot tell what that does.
+bool may_have_hot_spots(const YarnModel& model);
+
 // `gradient` belongs to `state`; friction's history goes along. Steps are certified as those of the piece
 // are: a spot whose steps are not, or that would leave the yarn known round it, stays as it was. Does nothing
-// where forces are spread over the piece, in periodic cells and where yarn resists twist, which spots cannot
-// tell.
+// where forces are spread over the piece, and where there can be no spots.
 SpotsReport settle_hot_spots(const YarnModel& model, const Unknowns& gradient, double tolerance,
                              YarnState& state, const ContactHistory& history);
 

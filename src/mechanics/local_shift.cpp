@@ -77,6 +77,7 @@ void LocalShift::raise(const std::vector<std::int32_t>& nodes, double shift) {
 }
 
 void LocalShift::fade() {
+  raised_.clear();
   float most = 0;
   for (float& own : own_) most = std::max(most, own *= static_cast<float>(faded));
   if (most < counts) own_.clear();

@@ -24,7 +24,7 @@ class LocalShift {
   bool raise(const std::vector<double>& before, const std::vector<double>& after, double gain, double shift);
   // Four times more.
   void raise(const std::vector<std::int32_t>& nodes, double shift);
-  // Control points that were raised since this was asked last, some more than once.
+  // Control points that were raised since this was asked last or since the last step, some more than once.
   std::vector<std::int32_t> take_raised() { return std::exchange(raised_, {}); }
   void fade();
   bool empty() const { return own_.empty(); }

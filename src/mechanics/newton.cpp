@@ -53,12 +53,13 @@ NewtonResult newton(const YarnModel& model, YarnState& state, const NewtonOption
   Unknowns gradient;
   TakenStep taken;
   const double outer = model.contact.outer;
+  const bool has_spots = search.is_large() && may_have_hot_spots(model);
   double shift = first_shift, loose = least_loose;
 
   for (result.iterations = 0;; ++result.iterations) {
     const double range = outer + loose;
     assembly.update_pairs(state, range);
-    if (search.is_large() && !model.periodic && result.iterations < options.most_iterations) {
+    if (has_spots && result.iterations < options.most_iterations) {
       assembly.gradient(state, gradient);
       SpotsReport settled = settle_hot_spots(model, gradient, options.tolerance, state, assembly.history());
       result.spot_iterations += settled.iterations;

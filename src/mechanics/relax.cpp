@@ -11,6 +11,13 @@
 namespace loopwright {
 namespace {
 
+// Growth need not wait for the last places, the next stage moves them again: such a share of the tolerance
+// ends a stage.
+constexpr double grown_quiet = 50;
+// Stages of growth that end early all start about as far from rest, and every shift that is too small costs a
+// factor: the next stage starts with this part of what the last one's first step needed.
+constexpr double of_first_shift = 0.25;
+
 RelaxResult relax_as_it_is(const Fabric& fabric, const RelaxOptions& options) {
   if (!(options.tolerance > 0) || !std::isfinite(options.tolerance))
     throw std::invalid_argument("the tolerance must be a positive number");
@@ -32,17 +39,14 @@ RelaxResult relax_as_it_is(const Fabric& fabric, const RelaxOptions& options) {
   const auto run = [&](const YarnModel& model, double radius, double tolerance, int iterations) {
     NewtonOptions newton_options;
     newton_options.tolerance = tolerance;
-    // Growth need not wait for the last places: the next stage moves them again.
-    newton_options.mostly_quiet = grown ? 0 : 50 * tolerance;
+    newton_options.mostly_quiet = grown ? 0 : grown_quiet * tolerance;
     newton_options.most_iterations = std::min(iterations, options.most_iterations - result.newton_iterations);
     newton_options.on_iteration = [&](int i, double residual) {
       if (!options.on_progress) return true;
       return options.on_progress(
           {radius < 1 ? "grow-in" : "relax", result.newton_iterations + i, residual, radius, &state});
     };
-    // Stages of growth that end early all start about as far from rest; every shift that is too small costs
-    // a factor.
-    if (!grown && newton_result.quiet) shift = std::max(shift, 0.25 * newton_result.first_shift);
+    if (!grown && newton_result.quiet) shift = std::max(shift, of_first_shift * newton_result.first_shift);
     newton_result = newton(model, state, newton_options, shift, grown ? &result.history : nullptr);
     shift = std::max(newton_result.shift, 1e-3);
     result.newton_iterations += newton_result.iterations;

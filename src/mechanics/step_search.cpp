@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mechanics/piece_size.hpp"
+
 namespace loopwright {
 namespace {
 
 constexpr double gap_share = 0.7;         // of the gap of two pieces of yarn that one step may use up
 constexpr double enough_decrease = 1e-4;  // Armijo's constant
 constexpr int most_cuts = 40;
-constexpr int many_nodes = 8000;
-constexpr int very_many_nodes = 400000;  // some two gigabytes: what is given back must be fetched anew
 // A large piece's step that would be cut to less than this by some yarn is solved for again, so often.
 constexpr double enough_scale = 0.5;
 constexpr int most_again = 3;
@@ -42,7 +42,6 @@ bool StepSearch::solve(const StepPlace& at, BlockMatrix& hessian, double& shift,
   if (counts_memory()) assembly_.drop_places();
   weigh(shift);
   hessian.measure_metric = {1, 1, 1};
-  local_.take_raised();
   for (int again = 0;; ++again) {
     const StepSolver::Report report =
         solver_.solve(hessian, at.state, at.gradient, accuracy, shift, step_, raise_at, local_.take_raised());

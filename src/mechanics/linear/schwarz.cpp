@@ -10,6 +10,7 @@
 
 #include "base/parallel.hpp"
 #include "mechanics/linear/conjugate_gradient.hpp"
+#include "mechanics/piece_size.hpp"
 
 namespace loopwright {
 namespace {
@@ -21,7 +22,6 @@ constexpr int known_iterations = 2;
 constexpr double ridge = 1e-7;  // of the plate's diagonal: splines that carry little all but repeat others
 
 constexpr std::size_t nodes_per_chunk = 4096;
-constexpr std::size_t very_many_points = 400000;  // so that memory counts
 
 std::size_t place(std::int64_t i) { return static_cast<std::size_t>(i); }
 
@@ -156,7 +156,7 @@ bool Schwarz::factor(const BlockMatrix& matrix, double shift) {
   for (const auto& patch : patches_) patch->factor.clear(), patch->definite = true;
 #ifdef __GLIBC__
   // The heap keeps what thousands of small factors leave behind; the coarse factors are too large for it.
-  if (!answers_.empty() && control_points_ > very_many_points) malloc_trim(0);
+  if (!answers_.empty() && control_points_ > very_many_nodes) malloc_trim(0);
 #endif
   coarse_ready_ = true;
   for (const auto& level : levels_) {

@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mechanics/piece_size.hpp"
+
 namespace loopwright {
 namespace {
 
 constexpr int dense_nodes = 160;  // below: a sparse factor fills up nearly as much
 constexpr int few_nodes = 1000;   // below: factoring costs less than anything cleverer
-constexpr int many_nodes = 8000;  // above: a whole factor costs too much, see linear/schwarz.hpp
 constexpr int most_inner = 24;    // more products and solves than this cost more than a new factor
 constexpr int most_patched = 200;
 constexpr int patched_factor = 35;  // iterations that take as long as factoring all patches and coarse spaces

@@ -259,7 +259,8 @@ void bind_experiments(py::module_& module) {
       py::arg("tolerance") = py::none(), py::arg("progress") = py::none(),
       "From a first geometry to rest by the way that cloth goes: on the needles, machine_width_mm wide "
       "under\n"
-      "a pull of take_down_N along its wales, then let go; flat_gap_mm: kept flat all the while, the "
+      "a pull of take_down_N along its wales, hanging under that pull as wide as it likes, then let go; "
+      "flat_gap_mm: kept flat all the while, the "
       "outermost\n"
       "centrelines so far apart (0: not at all); hand_pull_N_m: then pulled straight both ways at once, and "
       "let\n"

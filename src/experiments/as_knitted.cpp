@@ -66,16 +66,18 @@ KnittedRest relax_as_knitted(const Fabric& first, const RelaxOptions& options,
   RelaxOptions released = options;
   released.grow_in = false;
   released.model.plates = rest.on_machine.plates;
-  released.history = rest.on_machine.history;
-  released.most_iterations = std::max(1, options.most_iterations - rest.on_machine.newton_iterations);
-  rest.relaxed = relax(rest.on_machine.fabric, released);
-  add_counts(rest.relaxed, rest.on_machine);
+  const auto on_from = [&](const RelaxResult& from, const Measures& load) {
+    released.most_iterations = std::max(1, options.most_iterations - from.newton_iterations);
+    return relax_on(from, released, load);
+  };
+  const Measures own = options.model.load;  // which the cloth bears all the while
+  rest.hanging = history.take_down_N > 0 ? on_from(rest.on_machine, knitting.model.load) : rest.on_machine;
+  rest.relaxed = on_from(rest.hanging, own);
   if (history.hand_pull_N_m > 0) {
     const double tension =
         history.hand_pull_N_m * d * 1e-3 / force_unit_N(options.model.material, d);  // B/d^3
-    const Measures pull{tension * rest.relaxed.fabric.height, tension * rest.relaxed.fabric.width, 0},
-        own = options.model.load;  // which the cloth bears before and after
-    for (const Measures& load : {sum(own, pull), own}) rest.relaxed = relax_on(rest.relaxed, released, load);
+    const Measures pull{tension * rest.relaxed.fabric.height, tension * rest.relaxed.fabric.width, 0};
+    for (const Measures& load : {sum(own, pull), own}) rest.relaxed = on_from(rest.relaxed, load);
   }
   return rest;
 }

@@ -11,11 +11,11 @@ struct MachineModel {
   // Yarn in a loop: what the stitch cam draws, and what it takes to go from one bed to the other (half of it
   // at either end of a loop). A loop that is moved has no more yarn than others, a loop on an empty needle no
   // less.
-  double loop_length_mm = 6.53, bed_change_mm = 1.39;
+  double loop_length_mm = 6.53, bed_change_mm = 1.33;
   double take_down_N = 0.02;  // of a wale
   // Laid flat: room for the centrelines of jersey (one layer of stitches, and a diameter for yarn that
   // crosses it) and of cloth whose stitches show both faces.
-  double one_layer_mm = 1.0, two_layers_mm = 1.70;
+  double one_layer_mm = 1.0, two_layers_mm = 1.60;
   double hand_pull_N_m = 10;  // cloth is pulled straight both ways before it is laid: 100 g on a width of 10 cm
   // Yarn. Its hairs touch at `diameter_mm`; pressed together it is as thick as `core_diameter_mm`, fibres packed
   // to 0.8; in between it is pressed as acrylic yarn is (Singal et al., Nature Communications 15, 2622 (2024)):

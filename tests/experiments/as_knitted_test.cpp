@@ -99,6 +99,29 @@ TEST(AsKnitted, FrictionRemembersTheNeedles) {
   EXPECT_NEAR(pulled.relaxed.measure_forces[1], 0, 1e-3);
 }
 
+// Below the needles nothing but the take-down holds the cloth: it draws in, and is longer for it.
+TEST(AsKnitted, ClothDrawsInBelowTheNeedles) {
+  const Fabric first = knitted("ge", "periodic", "");
+  RelaxOptions options = with_friction(0.25);
+  options.set = 0.5;
+  constexpr double take_down_N = 0.02;
+  const KnittedRest rest = relax_as_knitted(first, options, history_of(first, 1.2, take_down_N));
+  ASSERT_TRUE(rest.on_machine.converged && rest.hanging.converged && rest.relaxed.converged);
+  const double d = first.diameter_mm * 1e-3;
+  EXPECT_NEAR(rest.hanging.measure_forces[1] * bend_stiffness / (d * d), take_down_N, 1e-4);
+  EXPECT_NEAR(rest.hanging.measure_forces[0], 0, 1e-3);
+  EXPECT_LT(rest.hanging.fabric.width, 0.95 * rest.on_machine.fabric.width);
+  EXPECT_GT(rest.hanging.fabric.height, 1.02 * rest.on_machine.fabric.height);
+  EXPECT_LT(rest.relaxed.fabric.height, rest.hanging.fabric.height);
+  // Its yarn keeps the shape in which it was set on the needles.
+  for (std::size_t y = 0; y < first.yarns.size(); ++y)
+    EXPECT_EQ(rest.hanging.fabric.yarns[y].natural_curvature,
+              rest.on_machine.fabric.yarns[y].natural_curvature);
+  // Without a take-down there is nothing to hang under.
+  const KnittedRest let_go = relax_as_knitted(first, options, history_of(first, 1.2, 0));
+  EXPECT_EQ(let_go.hanging.fabric.width, let_go.on_machine.fabric.width);
+}
+
 // Pulled both ways and let go: with friction a rib stays wider than it came from the needles, plain without
 // it goes back (such a rib has two shapes of rest), and neither bears anything in the end.
 TEST(AsKnitted, APullByHandLeavesWhatFrictionHolds) {

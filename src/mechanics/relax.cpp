@@ -11,8 +11,8 @@
 namespace loopwright {
 namespace {
 
-// Growth need not wait for the last places, the next stage moves them again: such a share of the tolerance
-// ends a stage.
+// Growth need not wait for the last places, the next stage moves them again: a stage ends where nearly all
+// forces are below so many times the tolerance.
 constexpr double grown_quiet = 50;
 // Stages of growth that end early all start about as far from rest, and every shift that is too small costs a
 // factor: the next stage starts with this part of what the last one's first step needed.

@@ -259,12 +259,9 @@ void bind_experiments(py::module_& module) {
       py::arg("tolerance") = py::none(), py::arg("progress") = py::none(),
       "From a first geometry to rest by the way that cloth goes: on the needles, machine_width_mm wide "
       "under\n"
-      "a pull of take_down_N along its wales, hanging under that pull as wide as it likes, then let go; "
-      "flat_gap_mm: kept flat all the while, the "
-      "outermost\n"
-      "centrelines so far apart (0: not at all); hand_pull_N_m: then pulled straight both ways at once, and "
-      "let\n"
-      "go again.");
+      "a pull of take_down_N along its wales; hanging under that pull, as wide as it likes; then let go.\n"
+      "flat_gap_mm: kept flat all the while, the outermost centrelines so far apart (0: not at all);\n"
+      "hand_pull_N_m: then pulled straight both ways at once, and let go again.");
   cloth.def(
       "sensitivity", &sensitivity_of, py::kw_only(), py::arg("deviations") = std::map<std::string, double>{},
       py::arg("progress") = py::none(),
